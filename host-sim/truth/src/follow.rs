@@ -5,7 +5,7 @@ use touchdown_scene::sensors::{Motion, PLANES};
 use super::{Units, press};
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer, Ring,
+    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer,
     RingState, Unbalance,
 };
 use crate::reference::press::Press;
@@ -206,13 +206,11 @@ fn race(bearing: &touchdown_scene::BallBearing) -> Race {
 
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
-        ring: Ring {
-            place: it.place,
-            radius: it.radius,
-            clearance: it.retainer.clearance,
-            friction: it.retainer.friction,
-            restitution: it.retainer.restitution,
-        },
+        place: it.place,
+        radius: it.radius,
+        clearance: it.retainer.clearance,
+        friction: it.retainer.friction,
+        restitution: it.retainer.restitution,
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
         press: it.wall.map(|wall| Press {

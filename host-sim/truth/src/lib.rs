@@ -1,11 +1,10 @@
 //! The reference over a scene: what a model is judged by.
 
-mod elastic;
 mod follow;
 pub mod reference;
 
-pub use elastic::press;
 pub use follow::{Moving, TrueState, Truth, held};
+pub use reference::press::press;
 
 use touchdown_base::history::History;
 use touchdown_scene::Scene;
@@ -36,6 +35,10 @@ impl Units {
         } else {
             start_speed(scene)
         };
+        Self::new(length, speed)
+    }
+
+    pub(crate) fn new(length: f64, speed: f64) -> Self {
         Self {
             length,
             time: length / speed,

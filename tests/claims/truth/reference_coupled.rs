@@ -8,7 +8,7 @@ use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::Reference;
 use touchdown_scene::{Magnet, Stop, Support};
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Ring, Unbalance};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Unbalance};
 
 const SPIN: f64 = 1000.0 * PI;
 const MOUNT: Support = Support {
@@ -51,10 +51,7 @@ fn released(start: Start) -> CoupledStart {
 fn long(rotor: &Machine, places: &[f64]) -> CoupledMachine {
     let level = CoupledMachine::level(rotor, None, None);
     let retainer = |place: &f64| Retainer {
-        ring: Ring {
-            place: *place,
-            ..level.retainers[0].ring
-        },
+        place: *place,
         ..level.retainers[0]
     };
     CoupledMachine {
@@ -66,7 +63,7 @@ fn long(rotor: &Machine, places: &[f64]) -> CoupledMachine {
 
 /// Touching two rings at an angle from the bottom, moving round at `rate` (rad/s), counter-clockwise
 /// positive.
-fn on_walls(a: &Ring, b: &Ring, angle: f64, rate: f64) -> CoupledStart {
+fn on_walls(a: &Retainer, b: &Retainer, angle: f64, rate: f64) -> CoupledStart {
     let slope = (b.clearance - a.clearance) / (b.place - a.place);
     let middle = a.clearance - slope * a.place;
     let (sine, cosine) = angle.sin_cos();
@@ -634,9 +631,9 @@ fn one_end_lands_first_and_its_percussion_centre_feels_nothing() {
 #[test]
 fn walls_are_started_on() {
     let mut machine = long(&RIG, &[-0.1, 0.15]);
-    machine.retainers[1].ring.clearance = 2e-4;
+    machine.retainers[1].clearance = 2e-4;
     let (angle, rate) = (0.3, 20.0);
-    let [a, b] = [0, 1].map(|k| machine.retainers[k].ring);
+    let [a, b] = [0, 1].map(|k| machine.retainers[k]);
     let start = on_walls(&a, &b, angle, rate);
     let mut happenings = Vec::new();
     let mut reference = CoupledReference::new(&machine, &start, SPIN);
@@ -809,11 +806,11 @@ proptest! {
         let mut machine = long(&rotor, &places);
         machine.transverse_inertia = 10_f64.powf(transverse);
         for (it, clearance) in machine.retainers.iter_mut().zip(clearances) {
-            it.ring.clearance = clearance;
+            it.clearance = clearance;
         }
         machine.magnets.push(Magnet { place: 0.05, stiffness, damping: 0.0, force: [0.0; 2], limit: None, on: None });
         // Inside every ring.
-        let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.ring.clearance / 1e-3 / it.ring.place.abs().max(0.01)).fold(1.0, f64::min);
+        let inside = |t: f64| 0.5 * t * machine.retainers.iter().map(|it| it.clearance / 1e-3 / it.place.abs().max(0.01)).fold(1.0, f64::min);
         let start = CoupledStart { position: [0.0; 2], velocity: [vx, vy], tilt: [inside(tx), inside(ty)], tilt_rate: [rx, ry], ..CoupledStart::default() };
         let mut reference = CoupledReference::new(&machine, &start, spin);
         let mut before = f64::INFINITY;
@@ -825,7 +822,7 @@ proptest! {
             let mut slips = Vec::new();
             let size = 1.0 + rotor.radius * spin.abs();
             for ((it, at), mode) in machine.retainers.iter().zip(&state.rings).zip(&state.modes) {
-                let (ring, q, w) = (&it.ring, at.displacement, at.displacement_rate);
+                let (ring, q, w) = (it, at.displacement, at.displacement_rate);
                 gaps.push(f64::hypot(q[0], q[1]) / ring.clearance);
                 let slip = cross(q, w) / ring.clearance + ring.radius * state.spin;
                 slips.push((*mode, if friction > 0.0 { slip / size } else { 0.0 }));

@@ -5,7 +5,7 @@ use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_tests::close::{close, close_pair};
 use touchdown_scene::{Magnet, Stop, Support};
-use touchdown_truth::reference::coupled::{Bending, CoupledMachine, CoupledReference, CoupledStart, Race, Retainer, Ring, Unbalance};
+use touchdown_truth::reference::coupled::{Bending, CoupledMachine, CoupledReference, CoupledStart, Race, Retainer, Unbalance};
 
 const CLEARANCE: f64 = 3e-4;
 const MASS: f64 = 3.42;
@@ -25,14 +25,16 @@ const RACE: Race = Race {
 };
 
 fn retainer(place: f64, mount: Option<Support>, race: Option<Race>) -> Retainer {
-    let ring = Ring {
+    Retainer {
         place,
         radius: RADIUS,
         clearance: CLEARANCE,
         friction: 0.1,
         restitution: 0.8,
-    };
-    Retainer { ring, mount, race, press: None }
+        mount,
+        race,
+        press: None,
+    }
 }
 
 fn machine(retainers: Vec<Retainer>) -> CoupledMachine {
@@ -71,8 +73,8 @@ fn at(position: [f64; 2], tilt: [f64; 2]) -> CoupledStart {
 
 fn frictionless(machine: &mut CoupledMachine, restitution: f64) {
     for it in &mut machine.retainers {
-        it.ring.friction = 0.0;
-        it.ring.restitution = restitution;
+        it.friction = 0.0;
+        it.restitution = restitution;
     }
 }
 
@@ -300,7 +302,7 @@ fn free_rings_keep_momentum() {
             damping: 0.0,
             ..MOUNT
         });
-        it.ring.friction = 0.1;
+        it.friction = 0.1;
     }
     let start = CoupledStart {
         velocity: [0.03, 0.04],
@@ -356,7 +358,7 @@ fn it_converges() {
     whole
         .retainers
         .iter_mut()
-        .for_each(|it| it.ring.friction = 0.1);
+        .for_each(|it| it.friction = 0.1);
     let end = |accuracy: f64| {
         let mut reference =
             CoupledReference::new(&whole, &at([2e-5, 0.0], [1e-4, 0.0]), 0.01 * SPIN);

@@ -6,7 +6,7 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_scene::{Base, Stop, Support};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, Ring};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer};
 use touchdown_truth::reference::press::{Press, PressShape};
 
 const ROTOR: Machine = Machine { friction: 0.0, restitution: 1.0, ..RIG };
@@ -39,7 +39,7 @@ fn level(rotor: &Machine, mount: Support, press: Option<Press>) -> CoupledMachin
 fn long(rotor: &Machine, mount: Support, press: Option<Press>, places: [f64; 2]) -> CoupledMachine {
     let level = level(rotor, mount, press);
     let one = level.retainers[0];
-    let retainer = |place| Retainer { ring: Ring { place, ..one.ring }, ..one };
+    let retainer = |place| Retainer { place, ..one };
     CoupledMachine { transverse_inertia: 0.03, retainers: places.map(retainer).to_vec(), ..level }
 }
 

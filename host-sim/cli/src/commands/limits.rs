@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn a_broken_limit_is_a_failed_check() {
-        let row = |measured| Row::new("made up", Precision::F64, measured, 1.0, "s");
+        let row = |measured| Row::of("made up", Precision::F64).at_most(measured, 1.0, "s");
         assert!(verdict(&[row(1.0)]).is_ok());
         let failure = verdict(&[row(1.0), row(1.5)]).expect_err("1.5 is above 1");
         assert_eq!(failure.status(), 1);

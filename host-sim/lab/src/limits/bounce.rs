@@ -36,7 +36,7 @@ pub fn rows() -> Result<Vec<Row>, Failure> {
         for precision in PRECISIONS {
             let worst = worst(&rig, asked, given, precision).map_err(refused)?;
             let name = format!("hertz: straight impact, restitution {words}: restitution");
-            rows.push(Row::new(name, precision, worst, LIMIT, "relative"));
+            rows.push(Row::of(name, precision).at_most(worst, LIMIT, "relative"));
         }
     }
     Ok(rows)

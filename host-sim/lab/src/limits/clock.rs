@@ -81,24 +81,16 @@ fn measure<R: Number>(
     let period = (2.0 * CLEARANCE / GRAVITY).sqrt() / STEP;
     let truth = period * (2.0 * count as f64 - 1.0);
     let due = ((TICKS as f64 / period + 1.0) / 2.0).floor();
+    let row = |extreme| Row::of(extreme, precision);
     Ok(vec![
-        Row::new(
-            "10^7 steps against strides of 1 s: moments of the impacts",
-            precision,
-            apart,
-            0.0,
-            "steps",
-        ),
-        Row::new(
-            "10^9 ticks (2.8 h): moment of the last impact, closed form",
-            precision,
+        row("10^7 steps against strides of 1 s: moments of the impacts")
+            .at_most(apart, 0.0, "steps"),
+        row("10^9 ticks (2.8 h): moment of the last impact, closed form").at_most(
             (ticks(last) / truth - 1.0).abs(),
             limit,
             "relative",
         ),
-        Row::new(
-            "10^9 ticks (2.8 h): impacts too many or too few, closed form",
-            precision,
+        row("10^9 ticks (2.8 h): impacts too many or too few, closed form").at_most(
             (count as f64 - due).abs(),
             1.0,
             "impacts",

@@ -88,18 +88,15 @@ impl Seen {
 
     /// One for each measure.
     pub fn rows(&self, name: &str, precision: Precision) -> Vec<Row> {
-        let row = |measure: &str, worst: Worst, unit| {
-            let name = format!("{name}: {measure}");
-            Row::new(name, precision, worst.measured, worst.limit, unit)
-        };
+        let row = |measure: &str| Row::of(format!("{name}: {measure}"), precision);
         let mut rows = vec![
-            row("farthest beyond a wall", self.beyond, "of a step's path"),
-            row("energy made by contacts", self.made, "m g rho0"),
-            row("energy not accounted for", self.missing, "m g rho0"),
-            row("steps with NaN or infinity", self.broken, "steps"),
+            row("farthest beyond a wall").worst(self.beyond, "of a step's path"),
+            row("energy made by contacts").worst(self.made, "m g rho0"),
+            row("energy not accounted for").worst(self.missing, "m g rho0"),
+            row("steps with NaN or infinity").worst(self.broken, "steps"),
         ];
-        let late = "first impact, off the reference";
-        rows.extend(self.late.map(|it| row(late, it, "T")));
+        let late = row("first impact, off the reference");
+        rows.extend(self.late.map(|it| late.worst(it, "T")));
         rows
     }
 }

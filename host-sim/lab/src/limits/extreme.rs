@@ -38,7 +38,7 @@ const EXTREMES: [(&str, &[f64], Change); 24] = [
     ("step of 1 ms", &[1e-3], |_| ()),
     ("restitution 0", &STEPS, |s| s.retainer.restitution = 0.0),
     ("restitution 0.99", &STEPS, |s| {
-        s.retainer.restitution = 0.99;
+        s.retainer.restitution = 0.99
     }),
     ("restitution 1", &STEPS, |s| s.retainer.restitution = 1.0),
     ("restitution 1 without friction", &STEPS, |s| {
@@ -54,17 +54,17 @@ const EXTREMES: [(&str, &[f64], Change); 24] = [
     ("no spin", &STEPS, |s| s.rotor.spin = 0.0),
     ("spin reversed", &STEPS, |s| s.rotor.spin *= -1.0),
     ("spin of 1 000 000 rpm", &STEPS, |s| {
-        s.rotor.spin = 1e6 * RPM;
+        s.rotor.spin = 1e6 * RPM
     }),
     ("no gravity", &STEPS, |s| {
         s.run.gravity = 0.0;
         s.start = free([0.05e-3, 0.1e-3], [0.02, -0.1]);
     }),
     ("start at the very centre", &STEPS, |s| {
-        s.start = free([0.0; 2], [0.0; 2]);
+        s.start = free([0.0; 2], [0.0; 2])
     }),
     ("start at rest on the wall", &STEPS, |s| {
-        s.start = wall(0.7, 0.0);
+        s.start = wall(0.7, 0.0)
     }),
     ("start on the wall, moving outward", &STEPS, |s| {
         s.start = free([0.0, -s.retainer.clearance], [0.01, -0.05]);
@@ -73,7 +73,7 @@ const EXTREMES: [(&str, &[f64], Change); 24] = [
         s.start = free([0.0, -s.retainer.clearance], [0.01, 0.05]);
     }),
     ("start along the wall where it falls away", &STEPS, |s| {
-        s.start = wall(2.5, 0.03);
+        s.start = wall(2.5, 0.03)
     }),
     ("whirl against the spin", &STEPS, |s| {
         s.start = wall(0.0, 340.0 * s.retainer.clearance);
@@ -92,7 +92,6 @@ const EXTREMES: [(&str, &[f64], Change); 24] = [
     }),
 ];
 
-/// All of them.
 pub fn extremes() -> Result<Vec<Extreme>, InputError> {
     let rig = Scene::load("rig")?;
     let made = EXTREMES.iter().map(|(name, steps, change)| {

@@ -1,7 +1,8 @@
 //! Random machines of the rung `coupled`: every combination of its parts, each with numbers from end to
 //! end of what such a machine may have.
 
-use std::fmt::Write as _;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -45,11 +46,8 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
                 let own = seen.rows(&own_name(*seed), precision);
                 rows.extend(own.into_iter().filter(|row| !row.holds));
             }
-            let all = seen.into_iter();
-            rows.extend(
-                all.fold(Seen::default(), Seen::worse)
-                    .rows(&name, precision),
-            );
+            let worst = seen.into_iter().fold(Seen::default(), Seen::worse);
+            rows.extend(worst.rows(&name, precision));
         }
         progress.advance();
     }
@@ -59,11 +57,8 @@ pub fn rows(machines: u64, progress: &mut Progress) -> Result<Vec<Row>, Failure>
 /// All measures of one random machine.
 pub fn rows_of(seed: u64) -> Result<Vec<Row>, Failure> {
     let of = |precision| Ok(watched(seed, precision)?.rows(&own_name(seed), precision));
-    let rows: Vec<_> = PRECISIONS
-        .into_iter()
-        .map(of)
-        .collect::<Result<_, Failure>>()?;
-    Ok(rows.concat())
+    let rows = PRECISIONS.into_iter().map(of);
+    Ok(rows.collect::<Result<Vec<_>, Failure>>()?.concat())
 }
 
 fn watched(seed: u64, precision: Precision) -> Result<Seen, Failure> {
@@ -88,11 +83,11 @@ fn named(parts: u64) -> String {
 pub fn text(seed: u64) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let has = |part: u64| seed >> part & 1 == 1;
-    let mass = decades(&mut random, -1.0, 3.0);
-    let clearance = decades(&mut random, -1.3, 0.3);
+    let mass = decades(&mut random, -1.0..3.0);
+    let clearance = decades(&mut random, -1.3..0.3);
     // Cylinder of steel, 4 to 30 times as long as its radius.
     let slender: f64 = random.random_range(4.0..30.0);
-    let radius = 1e3 * (mass / (7850.0 * std::f64::consts::PI * slender)).cbrt();
+    let radius = 1e3 * (mass / (7850.0 * PI * slender)).cbrt();
     let length = slender * radius;
     let polar = 0.5e-6 * mass * radius * radius * random.random_range(0.5..5.0);
     let speed = random.random_range(-1.0..1.0) * 6e6 / radius;
@@ -104,24 +99,27 @@ pub fn text(seed: u64) -> String {
     );
     let ends = [-0.45, 0.45].map(|at| at * length * random.random_range(0.3..1.0));
     // Unbalance of the grades G 0.1 to G 6.3.
-    let grade = decades(&mut random, -1.0, 0.8);
-    let unbalance = 1e3 * mass * grade / (speed.abs() * std::f64::consts::TAU / 60.0).max(10.0);
-    let _ = write!(
-        text,
-        "[two_plane]\nrotor_length_mm = {length}\nunbalance_g_mm = {unbalance}\n"
-    );
+    let grade = decades(&mut random, -1.0..0.8);
+    let unbalance = 1e3 * mass * grade / (speed.abs() * TAU / 60.0).max(10.0);
+    text += &format!("[two_plane]\nrotor_length_mm = {length}\nunbalance_g_mm = {unbalance}\n");
     for at in ends {
-        let _ = writeln!(text, "[[ring]]\nz_mm = {at}");
+        text += &format!("[[ring]]\nz_mm = {at}\n");
     }
     if has(0) {
         text += &support(&mut random, mass, clearance);
-        text += &stop(seed, &text);
+        // A stop that there is may give way.
+        if text.contains("travel_mm") {
+            text += &perhaps(&mut own(seed, 8), "stop_stiffness_n_m", 1.0, 4.0..10.0);
+        }
         text += &seat(seed, mass);
     }
     if has(1) {
-        let inertia = polar * decades(&mut random, -4.0, -0.5);
-        let _ = writeln!(text, "[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}");
-        text += &balls(seed, has(5));
+        let inertia = polar * decades(&mut random, -4.0..-0.5);
+        text += &format!("[ball_bearing]\ninner_ring_inertia_kg_m2 = {inertia}\n");
+        // So may balls, behind compliant contacts.
+        if has(5) {
+            text += &perhaps(&mut own(seed, 7), "stiffness_n_m", 1.0, 6.0..9.0);
+        }
     }
     if has(2) {
         text += &modes(&mut random);
@@ -130,13 +128,12 @@ pub fn text(seed: u64) -> String {
         text += &left(&mut random, seed, mass, ends);
     }
     let [x, y] = [(); 2].map(|()| clearance * random.random_range(-0.2..0.2));
-    let step = decades(&mut random, 0.0, 300_f64.log10());
+    let step = decades(&mut random, 0.0..300_f64.log10());
     let duration = (STEPS * 1e-6 * step).min(0.05);
     if has(4) {
         text += &lift(seed, mass, ends, duration);
     }
-    let _ = write!(
-        text,
+    text += &format!(
         "[start]\nx_mm = {x}\ny_mm = {y}\n[run]\nduration_s = {duration}\n[model]\nrung = \"coupled\"\nstep_us = {step}\n"
     );
     if has(5) {
@@ -147,65 +144,43 @@ pub fn text(seed: u64) -> String {
 
 /// 1e4 to 1e10 N/m, rings from 1e-4 of the rotor, and a stop in one of two.
 fn support(random: &mut ChaCha8Rng, mass: f64, clearance: f64) -> String {
-    let ring = mass * decades(random, -4.0, 0.0);
-    let stiffness = decades(random, 4.0, 10.0);
-    let damping = 2.0 * (stiffness * ring).sqrt() * decades(random, -3.0, 1.0);
+    let ring = mass * decades(random, -4.0..0.0);
+    let stiffness = decades(random, 4.0..10.0);
+    let damping = 2.0 * (stiffness * ring).sqrt() * decades(random, -3.0..1.0);
     let mut text = format!(
         "[support]\nmass_kg = {ring}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
     );
     if random.random() {
-        let travel = (clearance * decades(random, -2.0, 0.5)).max(0.001);
-        let _ = writeln!(text, "travel_mm = {travel}");
+        let travel = (clearance * decades(random, -2.0..0.5)).max(0.001);
+        text += &format!("travel_mm = {travel}\n");
     }
     text
-}
-
-/// A stop that there is gives way in one of two.
-fn stop(seed: u64, text: &str) -> String {
-    let mut random = own(seed, 8);
-    let stiffness = decades(&mut random, 4.0, 10.0);
-    match text.contains("travel_mm") && random.random() {
-        true => format!("stop_stiffness_n_m = {stiffness}\n"),
-        false => String::new(),
-    }
 }
 
 /// Another stiffness along y in one of two, dry friction of 0.01 to 10 times the weight in one of two. Numbers of their own.
 fn seat(seed: u64, mass: f64) -> String {
     let mut random = own(seed, 2);
     let mut text = String::new();
-    let [spring, damper] = [
-        decades(&mut random, 4.0, 10.0),
-        decades(&mut random, 0.0, 5.0),
-    ];
+    let spring = decades(&mut random, 4.0..10.0);
+    let damper = decades(&mut random, 0.0..5.0);
     if random.random() {
         text += &format!("vertical_stiffness_n_m = {spring}\nvertical_damping_n_s_m = {damper}\n");
     }
-    let friction = 9.81 * mass * decades(&mut random, -2.0, 1.0);
-    if random.random() {
-        let _ = writeln!(text, "dry_friction_n = {friction}");
-    }
-    text
-}
-
-/// Balls that give way in one of two, behind compliant contacts.
-fn balls(seed: u64, compliant: bool) -> String {
-    let mut random = own(seed, 7);
-    let stiffness = decades(&mut random, 6.0, 9.0);
-    match compliant && random.random() {
-        true => format!("stiffness_n_m = {stiffness}\n"),
-        false => String::new(),
-    }
+    text + &perhaps(&mut random, "dry_friction_n", 9.81 * mass, -2.0..1.0)
 }
 
 /// The greatest force of a magnet, 0.1 to 10 times the weight, in one of two. Numbers of their own.
 fn limit(seed: u64, stream: u64, mass: f64) -> String {
-    let mut random = own(seed, stream);
-    let limit = 9.81 * mass * decades(&mut random, -1.0, 1.0);
-    if random.random() {
-        return format!("limit_n = {limit}\n");
+    perhaps(&mut own(seed, stream), "limit_n", 9.81 * mass, -1.0..1.0)
+}
+
+/// A key and so many decades of a unit, in one of two.
+fn perhaps(random: &mut ChaCha8Rng, key: &str, unit: f64, range: Range<f64>) -> String {
+    let value = unit * decades(random, range);
+    match random.random() {
+        true => format!("{key} = {value}\n"),
+        false => String::new(),
     }
-    String::new()
 }
 
 /// What does not change the numbers of other parts.
@@ -219,13 +194,12 @@ fn own(seed: u64, stream: u64) -> ChaCha8Rng {
 fn left(random: &mut ChaCha8Rng, seed: u64, mass: f64, ends: [f64; 2]) -> String {
     let mut text = String::new();
     for (at, stream) in ends.into_iter().zip(3..) {
-        let held =
-            0.5 * mass * (std::f64::consts::TAU * random.random_range(15.0..100.0_f64)).powi(2);
+        let rate = TAU * random.random_range(15.0..100.0_f64);
+        let held = 0.5 * mass * rate.powi(2);
         let stiffness: f64 = held * random.random_range(-1.0..0.3);
         let stiffness = stiffness.abs().max(1.0).copysign(stiffness);
         let damping = random.random_range(0.0..0.8) * (held * 0.5 * mass).sqrt();
-        let _ = write!(
-            text,
+        text += &format!(
             "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\n"
         );
         text += &limit(seed, stream, mass);
@@ -240,15 +214,14 @@ fn lift(seed: u64, mass: f64, ends: [f64; 2], duration: f64) -> String {
     let from = duration * random.random_range(0.1..0.6);
     let mut text = String::new();
     for (at, stream) in ends.into_iter().zip(5..) {
-        let rate = std::f64::consts::TAU * random.random_range(15.0..100.0_f64);
+        let rate = TAU * random.random_range(15.0..100.0_f64);
         let stiffness = -0.5 * mass * rate * rate;
         let damping = 0.5 * mass * rate * random.random_range(0.1..2.0);
-        let _ = write!(
-            text,
+        text += &format!(
             "[[magnet]]\nz_mm = {at}\nstiffness_n_m = {stiffness}\ndamping_n_s_m = {damping}\nfrom_s = {from}\n"
         );
         if random.random() {
-            let _ = writeln!(text, "until_s = {}", from + 0.3 * duration);
+            text += &format!("until_s = {}\n", from + 0.3 * duration);
         }
         text += &limit(seed, stream, mass);
     }
@@ -257,20 +230,19 @@ fn lift(seed: u64, mass: f64, ends: [f64; 2], duration: f64) -> String {
 
 /// One to three of a uniform beam.
 fn modes(random: &mut ChaCha8Rng) -> String {
-    let first = decades(random, 1.0, 3.3);
+    let first = decades(random, 1.0..3.3);
     let mut text = String::new();
     // Squares of the roots of the free-free beam, over the first.
     let ratios = [1.0, 2.757, 5.404];
     for ratio in ratios.iter().take(random.random_range(1..=3)) {
-        let (frequency, damping) = (first * ratio, decades(random, -4.0, -1.0));
-        let _ = writeln!(
-            text,
-            "[[mode]]\nfrequency_hz = {frequency}\ndamping_ratio = {damping}\nbeam = true"
+        let (frequency, damping) = (first * ratio, decades(random, -4.0..-1.0));
+        text += &format!(
+            "[[mode]]\nfrequency_hz = {frequency}\ndamping_ratio = {damping}\nbeam = true\n"
         );
     }
     text
 }
 
-fn decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
-    10_f64.powf(random.random_range(low..high))
+fn decades(random: &mut ChaCha8Rng, range: Range<f64>) -> f64 {
+    10_f64.powf(random.random_range(range))
 }

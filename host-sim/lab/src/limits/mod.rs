@@ -12,11 +12,9 @@ mod coupled;
 mod extreme;
 mod machines;
 mod pace;
-mod press;
 mod refusal;
 mod row;
 mod scenes;
-mod stepping;
 mod support;
 mod table;
 mod truth;
@@ -81,22 +79,18 @@ fn refused(error: ConfigError) -> Failure {
 
 /// The rungs that integrate, whose path is their own: what holds whatever the scene.
 fn other_rungs(extremes: &[Extreme], progress: &mut Progress) -> Result<Vec<Row>, ConfigError> {
-    let done: Vec<[Vec<Row>; 2]> = extremes
-        .par_iter()
-        .map(|extreme| {
-            let (mut moreau, mut hertz) = (Vec::new(), Vec::new());
-            for precision in PRECISIONS {
-                moreau.extend(stepping::rows(extreme, precision)?);
-                hertz.extend(compliant::rows(extreme, precision)?);
-            }
-            Ok([moreau, hertz])
-        })
-        .collect::<Result<_, ConfigError>>()?;
-    for _ in extremes {
-        progress.advance();
-    }
-    let (moreau, hertz): (Vec<_>, Vec<_>) = done.into_iter().map(|[a, b]| (a, b)).unzip();
-    Ok([moreau, hertz].into_iter().flatten().flatten().collect())
+    let both = |extreme: &Extreme| -> Result<_, ConfigError> {
+        let (mut moreau, mut hertz) = (Vec::new(), Vec::new());
+        for precision in PRECISIONS {
+            moreau.extend(scenes::stepped(extreme, precision)?);
+            hertz.extend(compliant::rows(extreme, precision)?);
+        }
+        Ok((moreau, hertz))
+    };
+    let done: Result<(Vec<_>, Vec<_>), _> = extremes.par_iter().map(both).collect();
+    let (moreau, hertz) = done?;
+    extremes.iter().for_each(|_| progress.advance());
+    Ok([moreau, hertz].concat().concat())
 }
 
 /// What rounding may add to the energy of a run at the scale of the gap, m g rho0: the targets of 10^6
@@ -124,7 +118,7 @@ fn closed(known: &ClosedForm, precision: Precision, limit: f64) -> Result<Row, C
         // NaN is the worst there is.
         worst = if error <= worst { worst } else { error };
     }
-    Ok(Row::new(known.name, precision, worst, limit, known.unit))
+    Ok(Row::of(&known.name, precision).at_most(worst, limit, known.unit))
 }
 
 /// `limits --json`.

@@ -35,8 +35,8 @@ pub fn rows(machines: u64) -> Result<Vec<Row>, Failure> {
     let given_up = all.iter().filter(|it| it.2).count();
     let name = format!("drop of 1 s: {machines} machines, truth given up in {given_up}");
     let row = |(seed, taken, _): &(u64, f64, bool)| {
-        let extreme = format!("{name}: machine {seed}");
-        Row::new(extreme, Precision::F64, *taken, MOST, "s of processor")
+        let row = Row::of(format!("{name}: machine {seed}"), Precision::F64);
+        row.at_most(*taken, MOST, "s of processor")
     };
     Ok(all.iter().take(SLOWEST).map(row).collect())
 }

@@ -34,17 +34,14 @@ fn in_numbers<R: Number>(precision: Precision, bad: [R; 3]) -> Result<Vec<Row>, 
     }
     let outside = free([R::ONE, R::ONE], [R::ZERO; 2]);
     let outside = u32::from(model.start(&outside, R::ONE, |_| ()).is_ok());
-    let row =
-        |extreme, accepted: u32| Row::new(extreme, precision, f64::from(accepted), 0.0, "inputs");
+    let row = |extreme, accepted: u32| {
+        Row::of(extreme, precision).at_most(f64::from(accepted), 0.0, "inputs")
+    };
+    let machine = "NaN and infinity in each number of the machine: accepted";
+    let start = "NaN and infinity in each number of the start: accepted";
     Ok(vec![
-        row(
-            "NaN and infinity in each number of the machine: accepted",
-            configs,
-        ),
-        row(
-            "NaN and infinity in each number of the start: accepted",
-            starts,
-        ),
+        row(machine, configs),
+        row(start, starts),
         row("start outside the gap: accepted", outside),
     ])
 }

@@ -22,26 +22,33 @@ pub struct Row {
 }
 
 impl Row {
-    /// Judges `measured`. What is no number at all breaks any limit, and stands as the largest there is.
-    pub fn new(
-        extreme: impl Into<String>,
-        precision: Precision,
-        measured: f64,
-        limit: f64,
-        unit: &'static str,
-    ) -> Self {
+    /// About this, as a start; nothing is measured of it yet.
+    pub fn of(extreme: impl Into<String>, precision: Precision) -> Self {
         Self {
             extreme: extreme.into(),
             precision,
-            measured: if measured.is_finite() {
-                measured
-            } else {
-                f64::MAX
-            },
+            measured: f64::MAX,
+            limit: 0.0,
+            unit: "",
+            holds: false,
+        }
+    }
+
+    /// Judges `measured`. What is no number at all breaks any limit, and stands as the largest there is.
+    pub fn at_most(self, measured: f64, limit: f64, unit: &'static str) -> Self {
+        let is_number = measured.is_finite();
+        Self {
+            measured: if is_number { measured } else { f64::MAX },
             limit,
             unit,
             holds: measured <= limit,
+            ..self
         }
+    }
+
+    /// Judges the worst that was found.
+    pub fn worst(self, worst: Worst, unit: &'static str) -> Self {
+        self.at_most(worst.measured, worst.limit, unit)
     }
 }
 
@@ -74,7 +81,7 @@ mod tests {
     use super::*;
 
     fn row(measured: f64) -> Row {
-        Row::new("made up", Precision::F32, measured, 1.0, "s")
+        Row::of("made up", Precision::F32).at_most(measured, 1.0, "s")
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The extremes of a retainer that gives way or turns.
 
+use std::f64::consts::TAU;
+
 use super::extreme::free;
 use touchdown_base::input_error::InputError;
 use touchdown_scene::{BallBearing, Model, Scene, Stop, Support};
@@ -23,17 +25,8 @@ const EXTREMES: [(&str, Change); 20] = [
     ("damped a thousandfold", |s| on(s, |it| it.damping *= 1e3)),
     ("ring of 1 mg", |s| on(s, |it| it.mass = 1e-6)),
     ("ring of 1 t", |s| on(s, |it| it.mass = 1e3)),
-    ("hard stop after 1 um", |s| {
-        on(s, |it| it.stop = Some(Stop::rigid(1e-6)));
-    }),
-    ("soft stop after 1 um", |s| {
-        on(s, |it| {
-            it.stop = Some(Stop {
-                travel: 1e-6,
-                stiffness: Some(1e8),
-            });
-        });
-    }),
+    ("hard stop after 1 um", |s| stopped(s, None)),
+    ("soft stop after 1 um", |s| stopped(s, Some(1e8))),
     ("restitution 0", |s| s.retainer.restitution = 0.0),
     ("restitution 1 without friction", |s| {
         s.retainer.restitution = 1.0;
@@ -41,9 +34,7 @@ const EXTREMES: [(&str, Change); 20] = [
     }),
     ("friction 2", |s| s.retainer.friction = 2.0),
     ("no spin", |s| s.rotor.spin = 0.0),
-    ("spin of 1 000 000 rpm", |s| {
-        s.rotor.spin = 1e6 * std::f64::consts::TAU / 60.0;
-    }),
+    ("spin of 1 000 000 rpm", |s| s.rotor.spin = 1e6 * TAU / 60.0),
     ("no gravity", |s| {
         s.run.gravity = 0.0;
         s.start = free([0.05e-3, 0.1e-3], [0.02, -0.1]);
@@ -73,6 +64,12 @@ fn on(scene: &mut Scene, change: impl Fn(&mut Support)) {
     }
 }
 
+/// After 1 um by a stop of this stiffness, N/m.
+fn stopped(scene: &mut Scene, stiffness: Option<f64>) {
+    let travel = 1e-6;
+    on(scene, |it| it.stop = Some(Stop { travel, stiffness }));
+}
+
 /// On a fixed support, with an inner ring of this inertia, kg m^2.
 fn turning(scene: &mut Scene, inertia: f64) {
     scene.support = None;
@@ -88,7 +85,6 @@ fn turning(scene: &mut Scene, inertia: f64) {
     });
 }
 
-/// All of them.
 pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
     let soft = Scene::load("soft-support")?;
     let rig = Scene::load("rig")?;

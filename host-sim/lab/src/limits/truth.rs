@@ -4,7 +4,7 @@
 //! itself: each number of the scene is changed by a little, one after the other.
 
 use super::extreme::{free, wall};
-use touchdown_base::history::{History, Impact};
+use touchdown_base::history::History;
 use touchdown_base::machine::Start;
 use touchdown_scene::{Precision, Scene};
 use touchdown_truth::{Units, simulate};
@@ -27,7 +27,8 @@ pub struct Truth {
     /// The same up to the first permanent contact.
     contact_growth: f64,
     units: Units,
-    surface_unit: f64,
+    /// rad/s.
+    spin_unit: f64,
 }
 
 impl Truth {
@@ -35,14 +36,12 @@ impl Truth {
     pub fn of(scene: &Scene) -> Self {
         let history = simulate(scene);
         let units = Units::of(scene);
+        let surface = (scene.rotor.radius * scene.rotor.spin).abs();
         let mut truth = Self {
             growth: Vec::new(),
             contact_growth: 1.0,
             units,
-            surface_unit: units
-                .speed
-                .max((scene.rotor.radius * scene.rotor.spin).abs())
-                / scene.rotor.radius,
+            spin_unit: surface.max(units.speed) / scene.rotor.radius,
             history,
         };
         // What has no losses never comes to rest on the wall; the reference takes its last hops for it.
@@ -62,14 +61,9 @@ impl Truth {
         truth.growth = vec![1.0; series.count()];
         for changed in changed(scene) {
             let other = simulate(&changed);
-            for (k, growth) in truth.growth.iter_mut().enumerate() {
-                let error = match other.impacts.get(k) {
-                    Some(impact) => {
-                        distance(&truth.history.impacts[k], impact, units, truth.surface_unit)
-                    }
-                    None => 1.0,
-                };
-                *growth = growth.max(error / CHANGE);
+            for k in 0..truth.growth.len() {
+                let error = truth.distance(k, &other).unwrap_or(1.0);
+                truth.growth[k] = truth.growth[k].max(error / CHANGE);
             }
             if let (Some(a), Some(b)) = (first_contact, other.contact_starts.first()) {
                 let error = (a - b).abs() / units.time;
@@ -84,7 +78,7 @@ impl Truth {
     pub fn impact_error(&self, found: &History, precision: Precision) -> (f64, usize) {
         let mut worst = 0.0_f64;
         let mut compared = 0;
-        for (k, (&growth, truth)) in self.growth.iter().zip(&self.history.impacts).enumerate() {
+        for (k, &growth) in self.growth.iter().enumerate() {
             let (target, lost) = match precision {
                 Precision::F64 => (1e-14 + 20.0 * growth * 2.2e-16, growth * 1.1e-16),
                 Precision::F32 => (5e-6 + 50.0 * growth * 6e-8, growth * 6e-8),
@@ -92,9 +86,7 @@ impl Truth {
             if lost > LOST {
                 break;
             }
-            let error = found.impacts.get(k).map_or(f64::INFINITY, |impact| {
-                distance(truth, impact, self.units, self.surface_unit)
-            });
+            let error = self.distance(k, found).unwrap_or(f64::INFINITY);
             worst = worst.max(error / target);
             compared += 1;
         }
@@ -115,6 +107,24 @@ impl Truth {
             (found - start).abs() / self.units.time
         });
         Some((error, target + 20.0 * self.contact_growth * epsilon))
+    }
+
+    /// Of the impacts of this number, where both have it: the largest of the differences in time (T), position (rho0),
+    /// velocity, speed into the wall (V) and spin (of itself or V).
+    fn distance(&self, number: usize, other: &History) -> Option<f64> {
+        let (a, b) = (
+            self.history.impacts.get(number)?,
+            other.impacts.get(number)?,
+        );
+        let apart = |a: [f64; 2], b: [f64; 2]| f64::hypot(a[0] - b[0], a[1] - b[1]);
+        let differences = [
+            (a.state.time - b.state.time).abs() / self.units.time,
+            apart(a.state.position, b.state.position) / self.units.length,
+            apart(a.state.velocity, b.state.velocity) / self.units.speed,
+            (a.normal_speed - b.normal_speed).abs() / self.units.speed,
+            (a.state.spin - b.state.spin).abs() / self.spin_unit,
+        ];
+        Some(differences.into_iter().fold(0.0, f64::max))
     }
 }
 
@@ -153,19 +163,4 @@ fn changed(scene: &Scene) -> Vec<Scene> {
         }
     }
     all
-}
-
-/// Largest of the differences in time (T), position (rho0), velocity, speed into the wall (V) and spin
-/// (of itself or V).
-fn distance(a: &Impact, b: &Impact, units: Units, spin: f64) -> f64 {
-    let apart = |a: [f64; 2], b: [f64; 2]| f64::hypot(a[0] - b[0], a[1] - b[1]);
-    [
-        (a.state.time - b.state.time).abs() / units.time,
-        apart(a.state.position, b.state.position) / units.length,
-        apart(a.state.velocity, b.state.velocity) / units.speed,
-        (a.normal_speed - b.normal_speed).abs() / units.speed,
-        (a.state.spin - b.state.spin).abs() / spin,
-    ]
-    .into_iter()
-    .fold(0.0, f64::max)
 }

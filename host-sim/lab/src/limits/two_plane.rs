@@ -1,5 +1,7 @@
 //! The extremes of a rotor that tilts.
 
+use std::f64::consts::TAU;
+
 use touchdown_base::input_error::InputError;
 use touchdown_scene::{Magnet, Retainer, Scene, TwoPlane};
 
@@ -11,7 +13,7 @@ type Change = fn(&mut Scene, &mut TwoPlane);
 const EXTREMES: [(&str, Change); 18] = [
     ("as it is", |_, _| ()),
     ("nearly a needle", |s, it| {
-        it.transverse_inertia = 1e4 * s.rotor.polar_inertia;
+        it.transverse_inertia = 1e4 * s.rotor.polar_inertia
     }),
     ("a thin disc", |s, it| {
         it.transverse_inertia = 0.5 * s.rotor.polar_inertia;
@@ -19,7 +21,7 @@ const EXTREMES: [(&str, Change); 18] = [
     }),
     ("one end high, one low", |_, it| it.tilt = [0.0, 2.4e-3]),
     ("one end next to its wall", |_, it| {
-        it.tilt = [0.0, -2.49e-3];
+        it.tilt = [0.0, -2.49e-3]
     }),
     ("one ring, at the centre of mass", |_, it| {
         it.rings.truncate(1);
@@ -48,11 +50,11 @@ const EXTREMES: [(&str, Change); 18] = [
     ("friction 2", |_, it| each_ring(it, |r| r.friction = 2.0)),
     ("no spin", |s, _| s.rotor.spin = 0.0),
     ("spin of 1 000 000 rpm", |s, it| {
-        s.rotor.spin = 1e6 * std::f64::consts::TAU / 60.0;
+        s.rotor.spin = 1e6 * TAU / 60.0;
         it.unbalance[0] = 0.0;
     }),
     ("unbalance of 1 mm g a gram of rotor", |_, it| {
-        it.unbalance[0] = 3.42e-3 * 1e-1;
+        it.unbalance[0] = 3.42e-3 * 1e-1
     }),
     ("principal axis 1 mrad askew", |_, it| it.skew = [1e-3, 1.0]),
     ("magnets that pull with ten times the weight", |s, it| {
@@ -86,7 +88,6 @@ fn magnets(stiffness: f64) -> Vec<Magnet> {
     vec![magnet(-0.1), magnet(0.1)]
 }
 
-/// All of them.
 pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
     let rig = Scene::load("two-plane")?;
     let made = EXTREMES.iter().map(|(name, change)| {

@@ -23,10 +23,8 @@ pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     let steel = modulus(YOUNG, POISSON);
     let whole = whole(base);
     let wide = wide(whole, base);
-    let slow = Contact {
-        speed: 0.02,
-        ..wide
-    };
+    let speed = 0.02;
+    let slow = Contact { speed, ..wide };
     let (right_force, right_time) = (force_constant(), time_constant());
     let by_print = 1.0 / wide.time(PRINTED_TIME);
     let run = straight::pulse(base, &whole)?;
@@ -123,8 +121,6 @@ pub fn wide(narrow: Contact, base: &Scene) -> Contact {
 
 /// Half the mass on each of two bearings.
 pub fn half(whole: Contact) -> Contact {
-    Contact {
-        mass: 0.5 * whole.mass,
-        ..whole
-    }
+    let mass = 0.5 * whole.mass;
+    Contact { mass, ..whole }
 }

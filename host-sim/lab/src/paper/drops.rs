@@ -1,4 +1,4 @@
-//! Random drops: how often a gap, a friction and a restitution end in whirl.
+//! Random drops: how often a gap, a friction and a restitution end in whirl, and that the gap does not decide about it.
 //!
 //! The paper does not say from which starts a drop comes, so a spread was chosen: places even over the
 //! clearance circle, velocities even over a circle of sqrt(g rho0) or none at all, spin 30 000 rpm. In
@@ -16,12 +16,16 @@ use serde::Serialize;
 
 use super::ending::{Ending, of_model, of_reference};
 use super::rig::{GAP, WIDE_GAP};
+use super::row::Row;
 use touchdown_base::failure::Failure;
 use touchdown_base::{progress, wilson};
 use touchdown_scene::{Scene, Start};
 
 /// Length of a run, in sqrt(rho0/g).
 const LONGEST: f64 = 100.0;
+/// Share by which model and reference may differ: they part where a start grazes.
+const CLOSE: f64 = 0.01;
+
 /// A machine and a set of starts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Condition {
@@ -64,56 +68,37 @@ pub struct Tally {
     pub ends: Vec<Ending>,
 }
 
-/// What is compared, all against the first: gap (other starts, then the same), friction, restitution.
-fn conditions() -> Vec<Condition> {
-    let rig = Condition {
-        clearance_m: GAP,
-        friction: 0.1,
-        restitution: 0.8,
-        fastest: 1.0,
-        seed: 1,
-    };
-    let wide = |condition| Condition {
-        clearance_m: WIDE_GAP,
-        ..condition
-    };
-    let rough = |friction| Condition { friction, ..rig };
-    let lively = |restitution| Condition {
-        restitution,
-        ..rough(0.3)
-    };
-    let at_rest = |condition| Condition {
-        fastest: 0.0,
-        ..condition
-    };
-    vec![
-        rig,
-        Condition {
-            seed: 2,
-            ..wide(rig)
-        },
-        rough(0.2),
-        rough(0.3),
-        wide(rough(0.3)),
-        rough(0.5),
-        lively(0.2),
-        lively(0.5),
-        Condition {
-            restitution: 0.95,
-            ..rig
-        },
-        at_rest(rig),
-        at_rest(rough(0.3)),
-    ]
-}
+/// What is compared, all against the first: gap (other starts, then the same), friction, restitution, and starts at rest.
+/// Gap, friction, restitution, fastest and seed of each.
+const CONDITIONS: [(f64, f64, f64, f64, u64); 11] = [
+    (GAP, 0.1, 0.8, 1.0, 1),
+    (WIDE_GAP, 0.1, 0.8, 1.0, 2),
+    (GAP, 0.2, 0.8, 1.0, 1),
+    (GAP, 0.3, 0.8, 1.0, 1),
+    (WIDE_GAP, 0.3, 0.8, 1.0, 1),
+    (GAP, 0.5, 0.8, 1.0, 1),
+    (GAP, 0.3, 0.2, 1.0, 1),
+    (GAP, 0.3, 0.5, 1.0, 1),
+    (GAP, 0.1, 0.95, 1.0, 1),
+    (GAP, 0.1, 0.8, 0.0, 1),
+    (GAP, 0.3, 0.8, 0.0, 1),
+];
 
 /// Drops `base` as each condition says, `drops` times.
 pub fn tally(base: &Scene, drops: u32) -> Result<Vec<Tally>, Failure> {
-    let conditions = conditions();
-    let progress = progress::bar("drops", u64::from(drops) * conditions.len() as u64);
-    let tallies = (conditions.into_iter())
-        .map(|condition| count(base, condition, drops, &progress))
-        .collect();
+    let progress = progress::bar("drops", u64::from(drops) * CONDITIONS.len() as u64);
+    let conditions = CONDITIONS.into_iter();
+    let tallies = conditions.map(|(clearance_m, friction, restitution, fastest, seed)| {
+        let condition = Condition {
+            clearance_m,
+            friction,
+            restitution,
+            fastest,
+            seed,
+        };
+        count(base, condition, drops, &progress)
+    });
+    let tallies = tallies.collect();
     progress.finish_and_clear();
     tallies
 }
@@ -171,4 +156,66 @@ fn random(base: &Scene, condition: Condition, number: u32) -> Scene {
     };
     scene.run.duration = LONGEST * condition.clearance_m / speed;
     scene
+}
+
+pub fn rows(tallies: &[Tally]) -> Vec<Row> {
+    let mut rows: Vec<Row> = tallies.iter().map(whirl).collect();
+    rows.extend(same_starts(tallies));
+    rows.extend(tallies.iter().find(|it| it.cycle > 0).map(third_motion));
+    rows
+}
+
+fn whirl(tally: &Tally) -> Row {
+    Row::new(
+        &format!("whirl, {}", name(tally)),
+        "",
+        share(tally.whirl_of_reference, tally),
+    )
+    .ours(share(tally.whirl, tally), CLOSE)
+    .note(&format!(
+        "{} of {} drops, 95 % interval {:.3} to {:.3}; right: reference, same starts",
+        tally.whirl, tally.drops, tally.whirl_low, tally.whirl_high
+    ))
+}
+
+/// Drops from the same scaled starts in both gaps that ended otherwise in the wider one.
+fn same_starts(tallies: &[Tally]) -> Option<Row> {
+    let of = |condition: Condition| tallies.iter().find(|it| it.condition == condition);
+    let (narrow, wide) = tallies.iter().find_map(|narrow| {
+        let wide = of(Condition {
+            clearance_m: WIDE_GAP,
+            ..narrow.condition
+        })?;
+        (wide.condition != narrow.condition).then_some((narrow, wide))
+    })?;
+    let differ = wide.ends.iter().zip(&narrow.ends).filter(|(a, b)| a != b);
+    let row = Row::new("drops that end otherwise at 0.75 mm", "", 0.0)
+        .ours(differ.count() as f64, CLOSE * f64::from(wide.drops))
+        .note("of those at mu 0.3, same starts in units of rho0 and sqrt(g rho0) as at 0.3 mm; right: the scale law has no gap");
+    Some(row)
+}
+
+fn third_motion(tally: &Tally) -> Row {
+    Row::new(
+        &format!("third motion, {}", name(tally)),
+        "",
+        share(tally.cycle_of_reference, tally),
+    )
+    .printed(0.0)
+    .ours(share(tally.cycle, tally), CLOSE)
+    .note("the paper names whirl and pendulum; this one slides, lifts off and bounces, four times or more; right: reference")
+}
+
+fn name(tally: &Tally) -> String {
+    let it = &tally.condition;
+    let gap = it.clearance_m * 1e3;
+    let speed = if it.fastest > 0.0 { "" } else { ", at rest" };
+    format!(
+        "{gap} mm, mu {}, eps {}{speed}",
+        it.friction, it.restitution
+    )
+}
+
+fn share(count: u32, tally: &Tally) -> f64 {
+    f64::from(count) / f64::from(tally.drops)
 }

@@ -1,20 +1,17 @@
 //! How a drop ends, found without following whirl further than a turn.
 
-use std::f64::consts::TAU;
-
 use serde::Serialize;
-use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Change, Precision, Stepper, Touch};
 
 use super::rig::refused;
 use touchdown_base::failure::Failure;
-use touchdown_base::history::{ModelEvent, PhaseKind};
-use touchdown_run::model::{Subject, Use, with_model};
+use touchdown_base::history::PhaseKind;
+use touchdown_base::rings::Histories;
+use touchdown_run::model::follow;
 use touchdown_scene::Scene;
-use touchdown_truth::reference::Reference;
+use touchdown_truth::{TrueState, Truth};
 
 /// Lift-offs from which a run without whirl counts as the third motion.
-const CYCLE: u32 = 4;
+const CYCLE: usize = 4;
 
 /// How a drop ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -30,71 +27,55 @@ pub enum Ending {
     Bouncing,
 }
 
-fn ending(turns: f64, lift_offs: u32, in_contact: bool) -> Ending {
-    if turns.abs() >= 1.0 {
-        Ending::Whirl
-    } else if lift_offs >= CYCLE {
-        Ending::Cycle
-    } else if in_contact {
-        Ending::Pendulum
-    } else {
-        Ending::Bouncing
-    }
-}
-
 /// Of the model under test.
 pub fn of_model(scene: &Scene) -> Result<Ending, Failure> {
-    with_model(scene, ToItsEnd(scene)).map_err(refused(scene))
-}
-
-struct ToItsEnd<'a>(&'a Scene);
-
-impl Use for ToItsEnd<'_> {
-    type Output = Ending;
-
-    fn with<R: Precision, M: Stepper<R>>(
-        self,
-        subject: &Subject<R, M>,
-    ) -> Result<Ending, ConfigError> {
-        let mut lift_offs = 0;
-        let mut count = |happening: touchdown_rotor::ModelEvent<R>| {
-            lift_offs += u32::from(happening.change == Change::LiftsOff);
-        };
-        let model = &subject.model;
-        let mut state = model.start(&subject.start, subject.spin, &mut count)?;
-        let (mut turns, mut touch) = (0.0, Touch::None);
-        let steps = (self.0.run.duration / self.0.model.step) as u32;
-        for _ in 0..steps {
-            model.step(&mut state, &mut count);
-            let now = model.kinematics(&state);
-            turns = now.turns.0 as f64 + now.turns.1.to_f64() / TAU;
-            touch = now.touch;
-            if turns.abs() >= 1.0 {
-                break;
-            }
-        }
-        Ok(ending(turns, lift_offs, touch != Touch::None))
-    }
+    let scene = in_whole_steps(scene);
+    let mut drop = follow(&scene).map_err(refused(&scene))?;
+    let last = followed(&scene, |time| drop.advance(time));
+    Ok(ending(last, || drop.finish().histories))
 }
 
 /// Of the reference.
 pub fn of_reference(scene: &Scene) -> Ending {
-    let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
-    let mut lift_offs = 0;
-    let mut turns = 0.0_f64;
-    let steps = (scene.run.duration / scene.model.step) as u32;
+    let scene = in_whole_steps(scene);
+    let mut truth = Truth::new(&scene);
+    let last = followed(&scene, |time| Some(truth.advance(time)));
+    ending(last, || truth.finish())
+}
+
+fn in_whole_steps(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let step = scene.model.step;
+    scene.run.duration = (scene.run.duration / step).floor() * step;
+    scene
+}
+
+/// Step by step to the end of the run, or to a full turn in contact.
+fn followed(scene: &Scene, mut advance: impl FnMut(f64) -> Option<TrueState>) -> Option<TrueState> {
+    let steps = (scene.run.duration / scene.model.step).round() as u32;
+    let mut last = None;
     for step in 1..=steps {
-        let time = f64::from(step) * scene.model.step;
-        turns = reference
-            .advance(time, &mut |happening| {
-                lift_offs += u32::from(matches!(happening, ModelEvent::LiftOff(_)));
-            })
-            .turns_in_contact;
-        if turns.abs() >= 1.0 {
+        last = advance(f64::from(step) * scene.model.step);
+        if last.is_some_and(whirls) {
             break;
         }
     }
-    let phase = reference.phase();
-    let in_contact = matches!(phase, PhaseKind::Sliding | PhaseKind::Rolling);
-    ending(turns, lift_offs, in_contact)
+    last
+}
+
+fn whirls(state: TrueState) -> bool {
+    state.rotor.turns_in_contact.abs() >= 1.0
+}
+
+fn ending(last: Option<TrueState>, all: impl FnOnce() -> Histories) -> Ending {
+    let phase = last.map(|it| it.phase);
+    if last.is_some_and(whirls) {
+        Ending::Whirl
+    } else if all().whole.lift_offs.len() >= CYCLE {
+        Ending::Cycle
+    } else if let Some(PhaseKind::Sliding | PhaseKind::Rolling) = phase {
+        Ending::Pendulum
+    } else {
+        Ending::Bouncing
+    }
 }

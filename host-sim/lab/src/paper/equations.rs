@@ -14,7 +14,6 @@ const SPACING: f64 = 20e-6;
 /// A spin so slow that the first impact ends the slip, rad/s: 4 rpm.
 const SLOW: f64 = -0.418_879_020_478_639_1;
 
-/// The rows.
 pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     let mut rows = flight(base)?;
     rows.extend(friction(base)?);
@@ -27,19 +26,21 @@ pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
 fn flight(base: &Scene) -> Result<Vec<Row>, Failure> {
     let scene = from_centre(base, MOMENT);
     let mut reference = Reference::new(&scene.machine(), &scene.start, scene.rotor.spin);
-    let polar = Polar::of(&reference.advance(MOMENT, &mut |_| {}));
-    let mut samples = [Polar::default(); 5];
+    let state = reference.advance(MOMENT, &mut |_| {});
+    let mut samples = [[0.0; 2]; 5];
     for (sample, offset) in samples.iter_mut().zip([-2.0, -1.0, 0.0, 1.0, 2.0]) {
         let end = run(&from_centre(base, MOMENT + offset * SPACING))?.end;
-        *sample = Polar::of(&end);
+        *sample = polar(&end);
     }
     let g = base.run.gravity;
-    let (sin, cos) = polar.angle.sin_cos();
-    let (radius, radial, turning) = (polar.radius, polar.radial, polar.turning);
+    let ([x, y], [vx, vy]) = (state.position, state.velocity);
+    let [radius, angle] = polar(&state);
+    let (sin, cos) = angle.sin_cos();
+    let (radial, turning) = ((x * vx + y * vy) / radius, rig::rate(&state));
     Ok(vec![
         Row::new("eq. (1), rho'' in flight, 12 ms", "m/s^2", radius * turning * turning - g * sin)
             .printed(-2.0 * radial * turning - g * sin)
-            .ours(second_difference(samples.map(|it| it.radius)), 1e-6)
+            .ours(second_difference(samples.map(|[radius, _]| radius)), 1e-6)
             .note("Coriolis and centrifugal term exchanged in print; ours: second differences of the model's path"),
         Row::new(
             "eq. (2), theta'' in flight, 12 ms",
@@ -47,7 +48,7 @@ fn flight(base: &Scene) -> Result<Vec<Row>, Failure> {
             -(2.0 * radial * turning + g * cos) / radius,
         )
         .printed(radius * turning * turning + g * cos)
-        .ours(second_difference(samples.map(|it| it.angle)), 1e-2)
+        .ours(second_difference(samples.map(|[_, angle]| angle)), 1e-2)
         .note("the printed right side is in m/s^2, not rad/s^2"),
     ])
 }
@@ -58,10 +59,7 @@ fn friction(base: &Scene) -> Result<Vec<Row>, Failure> {
     let jump = |spin: f64| -> Result<f64, Failure> {
         let mut scene = from_centre(base, 10e-3);
         scene.rotor.spin = spin;
-        Ok(run(&scene)?
-            .impacts
-            .first()
-            .map_or(f64::NAN, |it| rig::rate(&it.state)))
+        rig::first_jump(&scene)
     };
     let beta = base.rotor.polar_inertia / (base.rotor.mass * base.rotor.radius.powi(2));
     let sticking = -base.rotor.radius * SLOW * beta / (1.0 + beta) / base.retainer.clearance;
@@ -99,30 +97,10 @@ fn restitution(base: &Scene) -> Result<Row, Failure> {
         .note("printed: 0 and above; right: an impact keeps eps^2 of its energy; ours: largest accepted"))
 }
 
-/// Standard polar coordinates, angle from x.
-#[derive(Clone, Copy, Default)]
-struct Polar {
-    /// m.
-    radius: f64,
-    /// rad.
-    angle: f64,
-    /// rho', m/s.
-    radial: f64,
-    /// theta', rad/s.
-    turning: f64,
-}
-
-impl Polar {
-    fn of(state: &RotorState) -> Self {
-        let ([x, y], [vx, vy]) = (state.position, state.velocity);
-        let radius = f64::hypot(x, y);
-        Self {
-            radius,
-            angle: y.atan2(x),
-            radial: (x * vx + y * vy) / radius,
-            turning: rig::rate(state),
-        }
-    }
+/// Radius (m) and angle from x (rad).
+fn polar(state: &RotorState) -> [f64; 2] {
+    let [x, y] = state.position;
+    [f64::hypot(x, y), y.atan2(x)]
 }
 
 /// At the middle of five values, [`SPACING`] apart; error of fourth order.

@@ -12,7 +12,6 @@ const LONG_ENOUGH: f64 = 0.1;
 /// Tolerance of angular speeds, rad/s.
 const CLOSE: f64 = 1e-9;
 
-/// The rows.
 pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     let scene = from_centre(base, LONG_ENOUGH);
     let (ours, right) = (run(&scene)?, touchdown_truth::simulate(&scene));

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use maud::{Markup, html};
 
-use super::curve::Curve;
+use super::Curve;
 use super::rig::{on_wall, pendulum_square, rate};
 use touchdown_base::history::PhaseKind;
 use touchdown_base::regions::{Orbit, Plane};
@@ -36,8 +36,7 @@ const LONGEST: u32 = 600;
 const HEIGHT: f64 = 460.0;
 const RANGE: f64 = 500.0;
 
-/// The plane of the rig.
-pub fn plane(base: &Scene) -> Plane {
+fn plane(base: &Scene) -> Plane {
     Plane::new(pendulum_square(base), base.retainer.friction)
 }
 
@@ -52,30 +51,18 @@ pub fn curves(base: &Scene) -> Vec<Curve> {
         points,
         class,
     };
+    let slowest = held(plane.slowest_whirl(), -PI, PI);
+    let widest = closed(plane.widest_swing());
     let mut curves = vec![
-        curve(
-            "A: slowest whirl that keeps contact",
-            "boundary",
-            held(plane.slowest_whirl(), -PI, PI),
-        ),
-        curve(
-            "B: widest swing that keeps contact",
-            "boundary",
-            closed(plane.widest_swing()),
-        ),
+        curve("A: slowest whirl that keeps contact", "boundary", slowest),
+        curve("B: widest swing that keeps contact", "boundary", widest),
     ];
     for side in [1.0, -1.0] {
         let limit = |phi: f64| Some([phi.to_degrees(), side * plane.limit(phi)]);
-        let halves = [spaced(-PI, -FRAC_PI_2), spaced(FRAC_PI_2, PI)];
-        let points = halves
-            .into_iter()
-            .flat_map(|half| half.map(limit).chain([None]))
-            .collect();
-        curves.push(curve(
-            "C: below it the wall cannot hold the rotor",
-            "limit",
-            points,
-        ));
+        let halves = [spaced(-PI, -FRAC_PI_2), spaced(FRAC_PI_2, PI)].into_iter();
+        let points = halves.flat_map(|half| half.map(limit).chain([None]));
+        let name = "C: below it the wall cannot hold the rotor";
+        curves.push(curve(name, "limit", points.collect()));
     }
     for (angle, rate) in STARTS {
         let name = format!("motion from {angle} deg and {rate} rad/s");
@@ -84,7 +71,6 @@ pub fn curves(base: &Scene) -> Vec<Curve> {
     curves
 }
 
-/// Draws it.
 pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
     let mut x = Axis::new(-180.0, 180.0, "\u{3b8} from the bottom, degrees", 8.0);
     x.step = 60.0;
@@ -97,9 +83,8 @@ pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
         y: &y,
         height: HEIGHT,
     };
-    let plane = plane(base);
     let view = View {
-        plane: &plane,
+        plane: &plane(base),
         side: 1.0,
         factor: 1.0,
     };

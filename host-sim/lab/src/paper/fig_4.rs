@@ -4,7 +4,7 @@ use std::io;
 
 use maud::{Markup, html};
 
-use super::curve::Curve;
+use super::Curve;
 use super::rig::rate;
 use touchdown_base::failure::Failure;
 use touchdown_chart::plot::{Axis, Chart};
@@ -61,23 +61,13 @@ pub fn curve(drawn: &Drawn) -> Curve {
     }
 }
 
-/// Draws one of them.
 pub fn drawing(drawn: &Drawn, curve: &Curve) -> Markup {
     let end = drawn.scene.run.duration * 1e3;
     let x = Axis::new(0.0, end, "time since release, ms", 6.0);
-    let low = curve
-        .points
-        .iter()
-        .flatten()
-        .map(|it| it[1])
-        .fold(0.0, f64::min);
-    let margin = 0.06 * (curve.top() - low);
-    let y = Axis::new(
-        low - margin,
-        curve.top() + margin,
-        "\u{3b8}\u{2032} near the wall, rad/s",
-        6.0,
-    );
+    let (low, top) = (curve.values().fold(0.0, f64::min), curve.top());
+    let margin = 0.06 * (top - low);
+    let title = "\u{3b8}\u{2032} near the wall, rad/s";
+    let y = Axis::new(low - margin, top + margin, title, 6.0);
     let chart = Chart {
         title: "theta' over time",
         description: "Angular speed round the bearing over time, where the rotor is beyond 80 % of the clearance.",

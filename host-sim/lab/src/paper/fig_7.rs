@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
+use super::Curve;
 use super::contact::{half, whole, wide};
-use super::curve::Curve;
 use super::hertz::Contact;
 use super::straight;
 use touchdown_base::failure::Failure;
@@ -24,19 +24,12 @@ pub fn curves(base: &Scene) -> Result<Vec<Curve>, Failure> {
     let narrow = half(whole(base));
     let wide = half(wide(whole(base), base));
     let exact = |contact: &Contact| contact.pulse(POINTS);
+    let ours = |contact: &Contact| straight::curve(base, contact);
     Ok(vec![
         curve("closed form, 0.3 mm", "pulse", exact(&narrow)),
         curve("closed form, 0.75 mm", "pulse wide", exact(&wide)),
-        curve(
-            "run of rung hertz, 0.3 mm",
-            "pulse run",
-            straight::curve(base, &narrow)?,
-        ),
-        curve(
-            "run of rung hertz, 0.75 mm",
-            "pulse run",
-            straight::curve(base, &wide)?,
-        ),
+        curve("run of rung hertz, 0.3 mm", "pulse run", ours(&narrow)?),
+        curve("run of rung hertz, 0.75 mm", "pulse run", ours(&wide)?),
     ])
 }
 
@@ -58,7 +51,6 @@ fn curve(name: &str, class: &'static str, pulse: Vec<(f64, f64)>) -> Curve {
     }
 }
 
-/// Draws it.
 pub fn drawing(curves: &[Curve]) -> Markup {
     let shown = || curves.iter().filter(|it| it.figure == FIGURE);
     let top = shown().map(Curve::top).fold(0.0, f64::max) * 1e-3;

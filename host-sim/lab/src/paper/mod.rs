@@ -4,7 +4,6 @@
 //! The printed numbers are those that its text and equations state; its drawings were not measured.
 
 mod contact;
-mod curve;
 mod drops;
 mod ending;
 mod equations;
@@ -16,21 +15,21 @@ mod hertz;
 mod page;
 mod rig;
 mod row;
-mod spread;
 mod straight;
 mod table;
 mod whirl;
 
-pub use curve::Curve;
 pub use drops::{Condition, Tally};
 pub use fig_4::Drawn;
 pub use page::page;
 pub use row::Row;
 pub use table::table;
 
+use maud::Markup;
 use serde::Serialize;
 
 use touchdown_base::failure::Failure;
+use touchdown_chart::plot::Chart;
 use touchdown_scene::Scene;
 
 /// Random drops of a condition, unless fewer are asked for.
@@ -60,6 +59,41 @@ impl Paper {
     }
 }
 
+/// A curve of a figure, in the units that it names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    /// Of the paper.
+    pub figure: &'static str,
+    /// What it shows.
+    pub name: String,
+    /// Quantity and unit of the first coordinate.
+    pub x: &'static str,
+    /// Of the second.
+    pub y: &'static str,
+    /// In order; null breaks the curve.
+    pub points: Vec<Option<[f64; 2]>>,
+    /// Style class.
+    #[serde(skip)]
+    pub class: &'static str,
+}
+
+impl Curve {
+    /// Draws it in other units: both coordinates times a factor.
+    pub fn draw(&self, chart: &Chart<'_>, [x, y]: [f64; 2]) -> Markup {
+        let points = self.points.iter().map(|it| it.unwrap_or([f64::NAN; 2]));
+        chart.curve(self.class, points.map(|it| (it[0] * x, it[1] * y)))
+    }
+
+    /// The greatest second coordinate, 0 or more.
+    pub fn top(&self) -> f64 {
+        self.values().fold(0.0, f64::max)
+    }
+
+    fn values(&self) -> impl Iterator<Item = f64> {
+        self.points.iter().flatten().map(|it| it[1])
+    }
+}
+
 /// Works everything out, with so many random drops of a condition.
 pub fn run(drops: u32) -> Result<Paper, Failure> {
     let base = rig::rig()?;
@@ -67,7 +101,7 @@ pub fn run(drops: u32) -> Result<Paper, Failure> {
     let mut rows = equations::rows(&base)?;
     rows.extend(fall::rows(&base)?);
     rows.extend(whirl::rows(&base)?);
-    rows.extend(spread::rows(&drops));
+    rows.extend(drops::rows(&drops));
     rows.extend(contact::rows(&base)?);
     let falls = fig_4::drops()?;
     let mut figures = fig_3::curves(&base);

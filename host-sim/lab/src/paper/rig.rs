@@ -71,6 +71,12 @@ pub fn rate(state: &RotorState) -> f64 {
     turning(state.position, state.velocity)
 }
 
+/// The same just after the first impact of a run; not a number without one.
+pub fn first_jump(scene: &Scene) -> Result<f64, Failure> {
+    let first = run(scene)?.impacts.into_iter().next();
+    Ok(first.map_or(f64::NAN, |it| rate(&it.state)))
+}
+
 /// Angular speed of a velocity at a position.
 pub fn turning([x, y]: [f64; 2], [vx, vy]: [f64; 2]) -> f64 {
     (x * vy - y * vx) / (x * x + y * y)

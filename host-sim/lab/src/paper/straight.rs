@@ -1,14 +1,11 @@
 //! A straight impact on rung `hertz`: force and duration by the model's steps, for the rows that have a
 //! closed form and for Fig. 7.
 
-use touchdown_rotor::error::ConfigError;
-use touchdown_rotor::{Precision, Stepper};
-
 use super::hertz::Contact;
 use super::rig::{refused, run, started};
 use touchdown_base::failure::Failure;
 use touchdown_base::history::Pulse;
-use touchdown_run::model::{Subject, Use, with_model};
+use touchdown_run::model::follow;
 use touchdown_scene::scales::compliance;
 use touchdown_scene::{Fidelity, Scene, Scheme, Start};
 
@@ -37,7 +34,22 @@ pub fn pulse(base: &Scene, contact: &Contact) -> Result<Pulse, Failure> {
 /// the rotor's speed.
 pub fn curve(base: &Scene, contact: &Contact) -> Result<Vec<(f64, f64)>, Failure> {
     let scene = scene(base, contact)?;
-    with_model(&scene, Curve(&scene)).map_err(refused(&scene))
+    let mut drop = follow(&scene).map_err(refused(&scene))?;
+    let mut upwards = |step: u64| {
+        let now = drop.advance(step as f64 * scene.model.step);
+        now.map_or(f64::NAN, |it| it.rotor.velocity[1])
+    };
+    let spacing = SPACING as f64 * scene.model.step;
+    let points = (scene.run.duration / spacing) as u64;
+    let before = BEFORE / LONGEST * scene.run.duration;
+    let mut speed = upwards(0);
+    let point = |point: u64| {
+        let next = upwards((point + 1) * SPACING);
+        let force = scene.rotor.mass * (next - speed) / spacing;
+        speed = next;
+        ((point as f64 + 0.5) * spacing - before, force)
+    };
+    Ok((0..points).map(point).collect())
 }
 
 /// Straight down at the contact's speed, from a little above the wall.
@@ -63,34 +75,4 @@ fn scene(base: &Scene, contact: &Contact) -> Result<Scene, Failure> {
         start(BEFORE * time * contact.speed),
         LONGEST * time,
     ))
-}
-
-struct Curve<'a>(&'a Scene);
-
-impl Use for Curve<'_> {
-    type Output = Vec<(f64, f64)>;
-
-    fn with<R: Precision, M: Stepper<R>>(
-        self,
-        subject: &Subject<R, M>,
-    ) -> Result<Vec<(f64, f64)>, ConfigError> {
-        let (model, scales) = (&subject.model, &subject.scales);
-        let mut state = model.start(&subject.start, subject.spin, |_| {})?;
-        let upwards =
-            |state: &M::State| model.kinematics(state).velocity[1].to_f64() * scales.speed;
-        let spacing = SPACING as f64 * self.0.model.step;
-        let points = (self.0.run.duration / spacing) as u64;
-        let before = BEFORE / LONGEST * self.0.run.duration;
-        let mut speed = upwards(&state);
-        let mut curve = Vec::new();
-        for point in 0..points {
-            for _ in 0..SPACING {
-                model.step(&mut state, |_| {});
-            }
-            let force = self.0.rotor.mass * (upwards(&state) - speed) / spacing;
-            speed = upwards(&state);
-            curve.push(((point as f64 + 0.5) * spacing - before, force));
-        }
-        Ok(curve)
-    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::ending::{Ending, of_model, of_reference};
 use super::equations::jump_without_cap;
-use super::rig::{WIDE_GAP, change, from_centre, on_wall, pendulum_square, rate, run};
+use super::rig::{WIDE_GAP, change, first_jump, from_centre, on_wall, pendulum_square, rate, run};
 use super::row::Row;
 use touchdown_base::failure::Failure;
 use touchdown_base::regions::Plane;
@@ -17,7 +17,6 @@ const A_TURN: f64 = 0.1;
 /// Tolerance of a threshold, rad/s.
 const CLOSE: f64 = 1e-6;
 
-/// The rows.
 pub fn rows(base: &Scene) -> Result<Vec<Row>, Failure> {
     let mut rows = thresholds(base)?;
     rows.push(gap(base)?);
@@ -77,9 +76,7 @@ fn gap(base: &Scene) -> Result<Row, Failure> {
     let share = |clearance: f64| -> Result<f64, Failure> {
         let mut scene = base.clone();
         scene.retainer.clearance = clearance;
-        let first = run(&from_centre(&scene, 0.02))?;
-        let jump = first.impacts.first().map_or(f64::NAN, |it| rate(&it.state));
-        Ok(jump / least_whirl(&scene)?)
+        Ok(first_jump(&from_centre(&scene, 0.02))? / least_whirl(&scene)?)
     };
     let of_speed = jump_without_cap(base) / contact_kept(base, base.retainer.friction);
     Ok(Row::new("first jump/whirl speed, 0.75 by 0.3 mm", "", 1.0)
@@ -93,22 +90,18 @@ fn gap(base: &Scene) -> Result<Row, Failure> {
 fn fig_3(base: &Scene) -> Result<Vec<Row>, Failure> {
     const BETWEEN: f64 = 320.0;
     let plane = Plane::new(pendulum_square(base), base.retainer.friction);
+    let edge = plane.widest_swing().rate(0.0);
     let widest = change(100.0, 300.0, |rate| Ok(!keeps_contact(base, rate)?))?;
     let lost = plane.orbit(0.0, BETWEEN * BETWEEN).held_until(0.5 * PI, PI);
-    let lift_off = run(&on_wall(base, 0.0, BETWEEN, A_TURN))?
-        .lift_offs
-        .first()
-        .copied()
-        .unwrap_or(f64::NAN);
+    let lift_offs = run(&on_wall(base, 0.0, BETWEEN, A_TURN))?.lift_offs;
+    let lift_off = lift_offs.first().copied().unwrap_or(f64::NAN);
     let [x, y] = run(&on_wall(base, 0.0, BETWEEN, lift_off))?.end.position;
     Ok(vec![
-        Row::new(
-            "Fig. 3, edge of B at the bottom",
-            "rad/s",
-            plane.widest_swing().rate(0.0),
-        )
-        .ours(widest, CLOSE)
-        .note("widest swing that keeps contact: it stops at 90 degrees; ours: bisection on runs"),
+        Row::new("Fig. 3, edge of B at the bottom", "rad/s", edge)
+            .ours(widest, CLOSE)
+            .note(
+                "widest swing that keeps contact: it stops at 90 degrees; ours: bisection on runs",
+            ),
         Row::new("Fig. 3, lift-off from 320 rad/s", "deg", lost.to_degrees())
             .ours(x.atan2(-y).to_degrees(), 1e-6)
             .note("from the bottom, where theta'^2 + g/rho0 cos phi falls through 0"),

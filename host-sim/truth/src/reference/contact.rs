@@ -2,9 +2,10 @@
 
 use super::roots::{first_fall, value};
 use super::scale::{Law, Sum};
-use super::series::{Coefficients, Grip, Series};
+use super::series::{Grip, Series, Terms};
 use super::wall::{ROUNDING, WallState};
 use std::f64::consts::{PI, TAU};
+use touchdown_base::history::ModelEvent;
 
 /// What the rounded `TAU` leaves out.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
@@ -19,17 +20,6 @@ enum Ending {
     Step,
     SlipEnds,
     GripLost(f64),
-    LiftsOff,
-}
-
-/// What changed at the end of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Change {
-    /// Slip ended.
-    Rolls,
-    /// Slip began.
-    Slides,
-    /// The wall fell away.
     LiftsOff,
 }
 
@@ -97,18 +87,18 @@ impl Contact {
     /// The state within the step.
     pub fn at(&self, elapsed: f64) -> WallState {
         let part = elapsed / self.series.span;
-        let angle = value(&self.series.angle, part);
+        let angle = self.series.angle.at(part);
         WallState {
             angle,
-            speed: value(&self.series.speed, part),
-            surface: value(&self.series.surface, part),
+            speed: self.series.speed.at(part),
+            surface: self.series.surface.at(part),
             turns: self.whole_turns + (angle - self.start_angle) / TAU,
         }
     }
 
-    /// Goes to the end of the step and begins the next; after a lift-off there is none.
-    pub fn pass(&mut self) -> Option<Change> {
-        let rise = |terms: &Coefficients| self.end * value(&terms[1..], self.end);
+    /// Goes to the end of the step, at this time, and begins the next; after a lift-off there is none. What changes there.
+    pub fn pass(&mut self, time: f64) -> Option<ModelEvent> {
+        let rise = |terms: &Terms| self.end * value(&terms.0[1..], self.end);
         let rises = [&self.series.angle, &self.series.speed, &self.series.surface].map(rise);
         self.angle.add(rises[0]);
         self.speed.add(rises[1]);
@@ -123,7 +113,7 @@ impl Contact {
         let grip = self.grip;
         match self.ending {
             Ending::Step => {}
-            Ending::LiftsOff => return Some(Change::LiftsOff),
+            Ending::LiftsOff => return Some(ModelEvent::LiftOff(time)),
             Ending::GripLost(sign) => self.grip = Grip::Slip(sign),
             Ending::SlipEnds => {
                 self.surface = Sum::new(-self.speed.value);
@@ -136,8 +126,8 @@ impl Contact {
         self.series = Series::new(&self.law, &self.wall(), self.grip);
         self.locate_ending();
         match (grip, self.grip) {
-            (Grip::Slip(_), Grip::Roll) => Some(Change::Rolls),
-            (Grip::Roll, Grip::Slip(_)) => Some(Change::Slides),
+            (Grip::Slip(_), Grip::Roll) => Some(ModelEvent::RollingStart(time)),
+            (Grip::Roll, Grip::Slip(_)) => Some(ModelEvent::SlidingStart(time)),
             _ => None,
         }
     }
@@ -162,22 +152,17 @@ impl Contact {
         };
         match self.grip {
             Grip::Slip(sign) => {
-                let falls = first_fall(
-                    &series.normal_acceleration,
-                    wall.pressing_rounding(&self.law),
-                );
+                let rounding = wall.pressing_rounding(&self.law);
+                let falls = first_fall(&series.normal_acceleration.0, rounding);
                 earlier(falls, Ending::LiftsOff);
-                let mut slip = series.speed;
-                for (slip, surface) in slip.iter_mut().zip(&series.surface) {
-                    *slip = sign * (*slip + surface);
-                }
+                let slip = (series.speed + series.surface) * sign;
                 let size = wall.speed.abs() + wall.surface.abs() + self.law.gravity;
-                earlier(first_fall(&slip, ROUNDING * size), Ending::SlipEnds);
+                earlier(first_fall(&slip.0, ROUNDING * size), Ending::SlipEnds);
             }
             Grip::Roll => {
                 for sign in [-1.0, 1.0] {
                     let margin = grip_margin(&self.law, series, sign);
-                    let falls = first_fall(&margin, margin_rounding(&self.law, &wall));
+                    let falls = first_fall(&margin.0, margin_rounding(&self.law, &wall));
                     earlier(falls, Ending::GripLost(sign));
                 }
             }
@@ -189,13 +174,9 @@ impl Contact {
 }
 
 /// What friction has left before slip of a sign begins, in rolling.
-fn grip_margin(law: &Law, rolling: &Series, sign: f64) -> Coefficients {
+fn grip_margin(law: &Law, rolling: &Series, sign: f64) -> Terms {
     let share = sign * law.inertia / (1.0 + law.inertia);
-    let mut margin = rolling.normal_acceleration;
-    for (margin, weight) in margin.iter_mut().zip(&rolling.weight) {
-        *margin = law.friction * *margin + share * weight;
-    }
-    margin
+    rolling.normal_acceleration * law.friction + rolling.weight * share
 }
 
 fn margin_rounding(law: &Law, wall: &WallState) -> f64 {
@@ -208,6 +189,6 @@ fn grip_without_slip(law: &Law, wall: &WallState) -> Grip {
     let rounding = margin_rounding(law, wall);
     [-1.0, 1.0]
         .into_iter()
-        .find(|sign| first_fall(&grip_margin(law, &rolling, *sign), rounding) == Some(0.0))
+        .find(|sign| first_fall(&grip_margin(law, &rolling, *sign).0, rounding) == Some(0.0))
         .map_or(Grip::Roll, Grip::Slip)
 }

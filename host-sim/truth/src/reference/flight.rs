@@ -1,6 +1,6 @@
 //! Free flight: a parabola, and where it meets the wall.
 
-use super::roots::{Crossings, polish, value, value_and_slope};
+use super::roots::{polish, stationary, value, value_and_slope};
 use super::scale::Law;
 use super::wall::WallState;
 
@@ -30,14 +30,8 @@ impl Flight {
         let outward = position[0] * velocity[0] + position[1] * velocity[1];
         let speed2 = velocity[0] * velocity[0] + velocity[1] * velocity[1];
         let curve = speed2 - law.gravity * position[1];
-        Self::new(
-            law,
-            position,
-            velocity,
-            surface,
-            [gap, 2.0 * outward, curve],
-            0,
-        )
+        let start = [gap, 2.0 * outward, curve];
+        Self::new(law, (position, velocity), surface, start, 0)
     }
 
     /// From the wall, with the speed `launch` inward; 0 where the wall falls away.
@@ -51,29 +45,22 @@ impl Flight {
         } else {
             3
         };
-        let (position, velocity) = wall.motion(-launch);
         let start = [0.0, -2.0 * launch, curve];
-        Self::new(law, position, velocity, wall.surface, start, touching)
+        Self::new(law, wall.motion(-launch), wall.surface, start, touching)
     }
 
-    /// `start` is the series of the squared distance from the wall as far as the launch gives it;
+    /// The three terms are those of the squared distance from the wall that the launch gives;
     /// its first `touching` terms are zero.
     fn new(
         law: &Law,
-        position: [f64; 2],
-        velocity: [f64; 2],
+        (position, velocity): ([f64; 2], [f64; 2]),
         surface: f64,
-        start: [f64; 3],
+        [gap, approach, curve]: [f64; 3],
         touching: usize,
     ) -> Self {
         let gravity = law.gravity;
-        let distance = [
-            start[0],
-            start[1],
-            start[2],
-            -gravity * velocity[1],
-            0.25 * gravity * gravity,
-        ];
+        let fall = [-gravity * velocity[1], 0.25 * gravity * gravity];
+        let distance = [gap, approach, curve, fall[0], fall[1]];
         let mut flight = Self {
             position,
             velocity,
@@ -137,9 +124,8 @@ impl Flight {
 /// The first rise through zero in `(0, end)`. A maximum that is zero within rounding is a graze:
 /// the flight goes on.
 fn landing(terms: &[f64], end: f64) -> Option<f64> {
-    let stationary = Crossings::of_slope(terms, end);
     let mut from = 0.0;
-    for &to in stationary.as_slice().iter().chain([&end]) {
+    for to in stationary(terms, end).into_iter().chain([end]) {
         let size = terms.iter().rev().fold(0.0, |sum, c| sum * to + c.abs());
         if value(terms, to) > ROUNDING * size {
             return Some(polish(terms, from, to));

@@ -9,6 +9,7 @@ mod contact;
 pub mod coupled;
 mod flight;
 mod impact;
+mod jet;
 pub mod press;
 pub mod pulse;
 mod roots;
@@ -16,10 +17,11 @@ mod scale;
 mod series;
 mod wall;
 
-use contact::{Change, Contact};
+use crate::Units;
+use contact::Contact;
 use flight::Flight;
 use impact::Settling;
-use scale::{Law, Scale, Sum};
+use scale::{Law, Sum, units};
 use touchdown_base::history::{Impact, ModelEvent, PhaseKind, RotorState};
 pub use touchdown_base::machine::{Machine, Start};
 use wall::WallState;
@@ -63,7 +65,7 @@ impl Motion {
 pub struct Reference {
     machine: Machine,
     law: Law,
-    scale: Scale,
+    scale: Units,
     motion: Motion,
     /// Start of the motion, s.
     since: Sum,
@@ -73,8 +75,8 @@ pub struct Reference {
 impl Reference {
     /// At the release; `spin` is counter-clockwise, rad/s.
     pub fn new(machine: &Machine, start: &Start, spin: f64) -> Self {
-        let scale = Scale::new(machine, start, spin);
-        let law = Scale::law(machine);
+        let scale = units(machine, start, spin);
+        let law = Law::of(machine);
         let surface = machine.radius * spin / scale.speed;
         let motion = match *start {
             Start::Free { position, velocity } => released(
@@ -146,16 +148,14 @@ impl Reference {
                 self.in_series = false;
                 self.motion = Motion::Contact(Box::new(contact));
             }
-            Motion::Contact(contact) => match contact.pass() {
-                None => {}
-                Some(Change::Rolls) => on_event(ModelEvent::RollingStart(time)),
-                Some(Change::Slides) => on_event(ModelEvent::SlidingStart(time)),
-                Some(Change::LiftsOff) => {
-                    on_event(ModelEvent::LiftOff(time));
+            Motion::Contact(contact) => {
+                let change = contact.pass(time);
+                if let Some(ModelEvent::LiftOff(_)) = change {
                     let flight = Flight::from_wall(&self.law, contact.wall(), 0.0);
                     self.motion = Motion::Flight(flight);
                 }
-            },
+                change.into_iter().for_each(on_event);
+            }
         }
     }
 

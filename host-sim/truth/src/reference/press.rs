@@ -3,6 +3,10 @@
 //! A line and balls have no closed form of it. So all follows from the force: the depth, its compliance (depth over force, of
 //! small changes) and the energy have one. The force at a depth is found by Newton's method.
 
+use std::f64::consts::PI;
+
+use touchdown_scene::{Contact, Scene};
+
 /// A line's greatest force, in 4 K c. At e^-2 its compliance is 0, and beyond it would be negative.
 const LINE_END: f64 = 0.134;
 /// Newton's steps at most; 10 or so take it to rounding.
@@ -142,4 +146,35 @@ impl Press {
             PressShape::Line { clearance } => 4.0 * self.stiffness * clearance,
         }
     }
+}
+
+/// By the textbooks' formulas and not by the model's code: a rotor of this radius in a ring of this clearance, m. A point is that of two spheres by Hertz, a line that of a cylinder
+/// by Johnson's logarithm. `line-power` has the stiffness `linear` (N/m) that the model goes by, so that its own error is not
+/// seen.
+pub fn press(scene: &Scene, [radius, clearance]: [f64; 2], linear: f64) -> Press {
+    let (shape, stiffness) = match scene.materials.contact {
+        Contact::Point => {
+            let curvature = 1.0 / radius - 1.0 / (radius + clearance);
+            let point = 4.0 / 3.0 * modulus(scene) * (1.0 / curvature).sqrt();
+            (PressShape::Power { exponent: 1.5 }, point)
+        }
+        Contact::LinePower { .. } => (PressShape::Power { exponent: 1.0 }, linear),
+        Contact::Line { length } => {
+            let line = PI * modulus(scene) * length;
+            (PressShape::Line { clearance }, line)
+        }
+    };
+    Press {
+        shape,
+        stiffness,
+        balls: None,
+        slowest: 0.0,
+    }
+}
+
+fn modulus(scene: &Scene) -> f64 {
+    let steel = &scene.materials.elastic;
+    let soft = |modulus: f64, ratio: f64| (1.0 - ratio * ratio) / modulus;
+    1.0 / (soft(steel.rotor_modulus, steel.rotor_poisson)
+        + soft(steel.retainer_modulus, steel.retainer_poisson))
 }

@@ -97,7 +97,7 @@ impl Meeting {
             }
         };
         let slope = |d: f64, v: f64| (v, self.gravity - force(d, v) / self.mass);
-        let (mut time, mut d, mut v, mut peak) = (0.0, 0.0, self.speed, 0.0);
+        let (mut time, mut d, mut v, mut peak_force) = (0.0, 0.0, self.speed, 0.0);
         // Damping many times critical creeps back; the bound keeps that finite.
         for _ in 0..1_000 * STEPS as u32 {
             let k1 = slope(d, v);
@@ -108,22 +108,25 @@ impl Meeting {
             let next_v = v + step / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1);
             if next_d <= 0.0 {
                 let part = d / (d - next_d);
+                let duration = time + part * step;
+                let left = -(v + part * (next_v - v)) / self.speed;
                 return (
                     Pulse {
-                        peak_force: peak,
-                        duration: time + part * step,
+                        peak_force,
+                        duration,
                     },
-                    -(v + part * (next_v - v)) / self.speed,
+                    left,
                 );
             }
             (time, d, v) = (time + step, next_d, next_v);
-            peak = f64::max(peak, force(d, v));
+            peak_force = f64::max(peak_force, force(d, v));
             at(time, force(d, v));
         }
+        let duration = f64::INFINITY;
         (
             Pulse {
-                peak_force: peak,
-                duration: f64::INFINITY,
+                peak_force,
+                duration,
             },
             0.0,
         )

@@ -1,7 +1,7 @@
 //! Roots of polynomials, coefficients in rising order.
 
-/// Degree of the largest polynomial solved by isolation: the squared distance in flight.
-const DEGREE: usize = 4;
+use std::iter::repeat;
+
 const MAX_ITERATIONS: usize = 200;
 
 /// Value at `x`.
@@ -17,45 +17,28 @@ pub fn value_and_slope(coefficients: &[f64], x: f64) -> (f64, f64) {
         .fold((0.0, 0.0), |(sum, slope), c| (sum * x + c, slope * x + sum))
 }
 
-/// The points of `(0, end)` where a polynomial changes its sign, rising.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Crossings {
-    at: [f64; DEGREE],
-    count: usize,
+/// The points of `(0, end)` where a polynomial changes its sign, rising: between the stationary points, which are the
+/// crossings of the derivative.
+fn crossings(coefficients: &[f64], end: f64) -> Vec<f64> {
+    let mut found = Vec::new();
+    if coefficients.len() < 2 {
+        return found;
+    }
+    let mut from = 0.0;
+    for to in stationary(coefficients, end).into_iter().chain([end]) {
+        if value(coefficients, from) * value(coefficients, to) < 0.0 {
+            found.push(polish(coefficients, from, to));
+        }
+        from = to;
+    }
+    found
 }
 
-impl Crossings {
-    /// Finds them between the stationary points, which are the crossings of the derivative.
-    pub fn of(coefficients: &[f64], end: f64) -> Self {
-        let mut found = Self::default();
-        if coefficients.len() < 2 {
-            return found;
-        }
-        let mut from = 0.0;
-        let stationary = Self::of_slope(coefficients, end);
-        for &to in stationary.as_slice().iter().chain([&end]) {
-            if value(coefficients, from) * value(coefficients, to) < 0.0 {
-                found.at[found.count] = polish(coefficients, from, to);
-                found.count += 1;
-            }
-            from = to;
-        }
-        found
-    }
-
-    /// The stationary points with a change of direction.
-    pub fn of_slope(coefficients: &[f64], end: f64) -> Self {
-        let mut slope = [0.0; DEGREE];
-        for (k, c) in coefficients.iter().enumerate().skip(1) {
-            slope[k - 1] = k as f64 * c;
-        }
-        Self::of(&slope[..coefficients.len() - 1], end)
-    }
-
-    /// In rising order.
-    pub fn as_slice(&self) -> &[f64] {
-        &self.at[..self.count]
-    }
+/// The stationary points with a change of direction.
+pub fn stationary(coefficients: &[f64], end: f64) -> Vec<f64> {
+    let terms = coefficients.iter().enumerate().skip(1);
+    let slope: Vec<f64> = terms.map(|(k, c)| k as f64 * c).collect();
+    crossings(&slope, end)
 }
 
 /// The root between `low` and `high`, where the signs differ: Newton, bisecting where it leaves
@@ -133,13 +116,19 @@ pub fn fall(coefficients: &[f64]) -> Fall {
     Fall::After(x)
 }
 
-/// Where a function that is not negative at 0 first falls below zero in `[0, 1]`.
-///
-/// Leading coefficients within `tolerance` are taken as zero, so a function that starts on zero is
-/// judged by the way it leaves it; 0 if it falls at once, `None` if it never does.
+/// The terms of a function that is not negative at 0 from the first that matters: those within `tolerances` (the last is
+/// that of all further ones too) are taken as zero, so a function that starts on zero is judged by the way it leaves it.
+/// None where it does not.
+pub fn leading(coefficients: &[f64], [first, second, further]: [f64; 3]) -> Option<&[f64]> {
+    let tolerances = [first, second].into_iter().chain(repeat(further));
+    let matters = |(c, tolerance): (&f64, f64)| c.abs() > tolerance;
+    let first = coefficients.iter().zip(tolerances).position(matters)?;
+    Some(&coefficients[first..])
+}
+
+/// Where such a function first falls below zero in `[0, 1]`; 0 if it falls at once, `None` if it never does.
 pub fn first_fall(coefficients: &[f64], tolerance: f64) -> Option<f64> {
-    let first = coefficients.iter().position(|c| c.abs() > tolerance)?;
-    let rest = &coefficients[first..];
+    let rest = leading(coefficients, [tolerance; 3])?;
     match fall(rest) {
         Fall::Never => None,
         Fall::At(x) => Some(x),

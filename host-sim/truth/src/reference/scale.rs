@@ -1,5 +1,6 @@
 //! The scale law: length is the clearance, time sqrt(clearance/g). Also the clock.
 
+use crate::Units;
 use touchdown_base::machine::{Machine, Start};
 
 /// What is left of a machine without its units.
@@ -15,50 +16,28 @@ pub struct Law {
     pub inertia: f64,
 }
 
-/// Units of the scaled quantities.
-#[derive(Clone, Copy, Debug)]
-pub struct Scale {
-    /// m.
-    pub length: f64,
-    /// s.
-    pub time: f64,
-    /// m/s.
-    pub speed: f64,
-}
-
-impl Scale {
-    /// Without gravity the unit of speed is that of the start: of the motion, else of the spin,
-    /// else 1 m/s.
-    pub fn new(machine: &Machine, start: &Start, spin: f64) -> Self {
-        let length = machine.clearance;
-        let motion = match *start {
-            Start::Free { velocity, .. } => f64::hypot(velocity[0], velocity[1]),
-            Start::Wall { tangential, .. } => tangential.abs(),
-        };
-        let speed = [
-            (machine.gravity * length).sqrt(),
-            motion,
-            (machine.radius * spin).abs(),
-        ]
-        .into_iter()
-        .find(|speed| *speed > 0.0)
-        .unwrap_or(1.0);
+impl Law {
+    pub fn of(machine: &Machine) -> Self {
         Self {
-            length,
-            time: length / speed,
-            speed,
-        }
-    }
-
-    /// The machine in these units.
-    pub fn law(machine: &Machine) -> Law {
-        Law {
             gravity: if machine.gravity > 0.0 { 1.0 } else { 0.0 },
             friction: machine.friction,
             restitution: machine.restitution,
             inertia: machine.polar_inertia / (machine.mass * machine.radius * machine.radius),
         }
     }
+}
+
+/// Units of the scaled quantities. Without gravity that of speed is the start's: of the motion, else of the spin,
+/// else 1 m/s.
+pub fn units(machine: &Machine, start: &Start, spin: f64) -> Units {
+    let motion = match *start {
+        Start::Free { velocity, .. } => f64::hypot(velocity[0], velocity[1]),
+        Start::Wall { tangential, .. } => tangential.abs(),
+    };
+    let fall = (machine.gravity * machine.clearance).sqrt();
+    let speeds = [fall, motion, (machine.radius * spin).abs()];
+    let speed = speeds.into_iter().find(|speed| *speed > 0.0);
+    Units::new(machine.clearance, speed.unwrap_or(1.0))
 }
 
 /// A running sum that keeps what rounding takes off.
@@ -70,12 +49,10 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// Starts at a value.
     pub fn new(value: f64) -> Self {
         Self { value, rest: 0.0 }
     }
 
-    /// Adds a term.
     pub fn add(&mut self, term: f64) {
         let term = term + self.rest;
         let sum = self.value + term;

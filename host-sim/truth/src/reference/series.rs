@@ -1,17 +1,18 @@
 //! Taylor series of the motion in permanent contact.
 
+use super::jet::Jet;
 use super::scale::Law;
 use super::wall::WallState;
 
 /// Order of the series.
-pub const ORDER: usize = 24;
+const ORDER: usize = 24;
 /// Size of the last terms, in parts of the quantity: the step follows from it.
 const LAST_TERM: f64 = 1e-18;
 /// Longest step, in units of the fastest of the motions (about radians).
 const LONGEST: f64 = 8.0;
 
-/// Coefficients in rising order.
-pub type Coefficients = [f64; ORDER + 1];
+/// Of a quantity.
+pub type Terms = Jet<{ ORDER + 1 }>;
 
 /// What friction does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,15 +29,15 @@ pub struct Series {
     /// Time that the series is good for.
     pub span: f64,
     /// From the bottom, counter-clockwise.
-    pub angle: Coefficients,
+    pub angle: Terms,
     /// Tangential speed.
-    pub speed: Coefficients,
+    pub speed: Terms,
     /// Radius times spin.
-    pub surface: Coefficients,
+    pub surface: Terms,
     /// Normal force per mass.
-    pub normal_acceleration: Coefficients,
+    pub normal_acceleration: Terms,
     /// Tangential weight per mass.
-    pub weight: Coefficients,
+    pub weight: Terms,
 }
 
 impl Series {
@@ -51,11 +52,12 @@ impl Series {
             0.0 => 1.0,
             rate => rate,
         };
-        let zero = [0.0; ORDER + 1];
-        let (mut angle, mut speed, mut surface) = (zero, zero, zero);
-        let (mut sine, mut cosine, mut normal_acceleration) = (zero, zero, zero);
-        (angle[0], speed[0], surface[0]) = (wall.angle, wall.speed, wall.surface);
-        (sine[0], cosine[0]) = wall.angle.sin_cos();
+        let start = |value| Terms::constant(value).0;
+        let (mut angle, mut speed, mut surface) =
+            (start(wall.angle), start(wall.speed), start(wall.surface));
+        let (sine, cosine) = wall.angle.sin_cos();
+        let (mut sine, mut cosine) = (start(sine), start(cosine));
+        let mut normal_acceleration = start(0.0);
         for k in 0..=ORDER {
             let (mut square, mut turned_sine, mut turned_cosine) = (0.0, 0.0, 0.0);
             for i in 0..=k {
@@ -75,42 +77,19 @@ impl Series {
                 cosine[k + 1] = part * turned_cosine;
             }
         }
-        let reach = [
-            reach(&angle, 1.0),
-            reach(&speed, rate),
-            reach(&surface, rate.max(wall.surface.abs())),
-        ]
-        .into_iter()
-        .fold(LONGEST, f64::min);
-        let mut series = Self {
+        let [angle, speed, surface] = [angle, speed, surface].map(Jet);
+        let sizes = [1.0, rate, rate.max(wall.surface.abs())];
+        let reach = [angle, speed, surface].into_iter().zip(sizes);
+        let reach = reach.map(|(terms, size)| terms.reach(LAST_TERM * size));
+        let reach = reach.fold(LONGEST, f64::min);
+        let scaled = |terms: Terms| terms.scaled(reach);
+        Self {
             span: reach / rate,
-            angle,
-            speed,
-            surface,
-            normal_acceleration,
-            weight: sine.map(|s| law.gravity * s),
-        };
-        for coefficients in [
-            &mut series.angle,
-            &mut series.speed,
-            &mut series.surface,
-            &mut series.normal_acceleration,
-            &mut series.weight,
-        ] {
-            let mut power = 1.0;
-            for c in coefficients {
-                *c *= power;
-                power *= reach;
-            }
+            angle: scaled(angle),
+            speed: scaled(speed),
+            surface: scaled(surface),
+            normal_acceleration: scaled(Jet(normal_acceleration)),
+            weight: scaled(Jet(sine) * law.gravity),
         }
-        series
     }
-}
-
-/// How far a series goes until its last terms matter.
-fn reach(coefficients: &Coefficients, size: f64) -> f64 {
-    [ORDER - 1, ORDER]
-        .map(|k| (LAST_TERM * size / coefficients[k].abs()).powf(1.0 / k as f64))
-        .into_iter()
-        .fold(f64::INFINITY, f64::min)
 }

@@ -3,7 +3,7 @@
 use super::seat::SeatLink;
 use super::soft_force::SoftForce;
 use super::surroundings::Surroundings;
-use super::system::{Hold, Mode, System};
+use super::system::{Coordinates, Hold, Mode, System};
 use super::tape::{Tape, Term};
 use super::unknown::{ForceKind, Unknown};
 
@@ -23,22 +23,19 @@ impl<'t> Forces<'t> {
         tape: &'t Tape,
         system: &System,
         surroundings: &Surroundings,
-        modes: &[Mode],
-        place: &[Term<'t>],
-        speed: &[Term<'t>],
+        now: &Coordinates<Term<'t>>,
     ) -> Self {
-        let none = place[0].constant(0.0);
-        let mut acceleration = surroundings.forces(place, speed);
+        let none = tape.given(0.0);
+        let mut acceleration = surroundings.forces(now);
         for (force, mobility) in acceleration.iter_mut().zip(&system.mobility) {
             *force = *force * *mobility;
         }
         let mut unknowns = Vec::new();
-        for (index, (link, mode)) in system.links.iter().zip(modes).enumerate() {
-            match (link.hold, *mode) {
+        for (index, link) in system.links.iter().enumerate() {
+            match (link.hold, link.mode) {
                 (Hold::Seat { .. } | Hold::Soft(_), _) | (_, Mode::Flight) => {}
-                (Hold::Wall { clearance, .. }, mode) => {
-                    let of = (index, link);
-                    unknowns.extend(Unknown::of_wall(of, clearance, mode, place, speed));
+                (Hold::Wall { clearance, .. }, _) => {
+                    unknowns.extend(Unknown::of_wall((index, link), clearance, now));
                 }
                 (Hold::Brake(_), Mode::Stick) => {
                     unknowns.push(Unknown::without_slip(index, [none; 2], none));
@@ -52,19 +49,20 @@ impl<'t> Forces<'t> {
             }
         }
         for seat in SeatLink::all(system) {
-            match modes[seat.link] {
-                Mode::Stick => unknowns.extend(seat.hold(system, modes, place)),
-                _ => seat.brake(system, speed, &mut acceleration),
+            match system.links[seat.link].mode {
+                Mode::Stick => unknowns.extend(seat.hold(system, &now.place)),
+                _ => seat.brake(system, &now.speed, &mut acceleration),
             }
         }
-        let pressed = SoftForce::all(system, modes, place, speed);
+        let pressed = SoftForce::all(system, now);
         for it in &pressed {
-            it.push(system, modes[it.link], &mut acceleration);
-            unknowns.extend((modes[it.link] == Mode::Stick).then(|| it.grip()));
+            it.push(system, &mut acceleration);
+            let sticks = system.links[it.link].mode == Mode::Stick;
+            unknowns.extend(sticks.then(|| it.grip()));
         }
         let mut result = Self {
             acceleration,
-            held: vec![[none; 2]; modes.len()],
+            held: vec![[none; 2]; system.links.len()],
             pressed,
         };
         for it in &result.pressed {

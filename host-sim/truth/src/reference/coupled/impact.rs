@@ -1,8 +1,9 @@
 //! Impacts at several links at once: Newton's restitution, Coulomb's impulse. Gauss-Seidel passes find which
 //! links press, stick and slide; for those the impulses are one linear system.
 
+use super::super::jet::dot;
 use super::linear::solve;
-use super::system::{Hold, Link, System};
+use super::system::{Coordinates, Hold, Link, System};
 
 /// Passes over all links; thousands are needed for a light ring between the rotor and its stop where no
 /// linear system is the answer.
@@ -28,27 +29,23 @@ pub struct Touching {
 
 impl Touching {
     /// Before the impact.
-    pub fn new(system: &System, link: usize, place: &[f64], speed: &[f64]) -> Self {
-        let [x, y] = system.links[link].lateral(place);
+    pub fn new(system: &System, link: usize, now: &Coordinates) -> Self {
+        let [x, y] = system.links[link].lateral(&now.place);
         let distance = f64::hypot(x, y);
-        let normal = [x / distance, y / distance];
-        let touching = Self {
+        let mut touching = Self {
             link,
-            normal,
+            normal: [x / distance, y / distance],
             closing: 0.0,
             impulse: 0.0,
             rubbed: 0.0,
         };
-        Self {
-            closing: touching.outward(system, speed),
-            ..touching
-        }
+        touching.closing = touching.outward(system, &now.speed);
+        touching
     }
 
     /// Speed into the wall.
     pub fn outward(&self, system: &System, speed: &[f64]) -> f64 {
-        let w = system.links[self.link].lateral(speed);
-        w[0] * self.normal[0] + w[1] * self.normal[1]
+        dot(&system.links[self.link].lateral(speed), &self.normal)
     }
 
     /// Slip; that of a brake has no lateral part.
@@ -60,7 +57,7 @@ impl Touching {
 
     /// Cosine of the angle between the normals.
     pub fn along(&self, other: &Self) -> f64 {
-        self.normal[0] * other.normal[0] + self.normal[1] * other.normal[1]
+        dot(&self.normal, &other.normal)
     }
 
     /// An impulse into the wall.
@@ -225,7 +222,7 @@ fn at_once(
 
 #[cfg(test)]
 mod tests {
-    use super::super::machine::{Bending, CoupledMachine, Race, Retainer, Ring, Unbalance};
+    use super::super::machine::{Bending, CoupledMachine, Race, Retainer, Unbalance};
     use super::*;
 
     /// Of a bending rotor one end slides, the other lands: the speeds of centre, tilt and modes all but cancel at the ends,
@@ -234,13 +231,11 @@ mod tests {
     fn an_impact_beside_a_sliding_end_is_solved_in_few_passes() {
         let (place, clearance, mass) = (0.286, 2.2e-4, 5.94);
         let retainer = |place, radius| Retainer {
-            ring: Ring {
-                place,
-                radius,
-                clearance,
-                friction: 0.15,
-                restitution: 0.6,
-            },
+            place,
+            radius,
+            clearance,
+            friction: 0.15,
+            restitution: 0.6,
             mount: None,
             press: None,
             race: Some(Race {
@@ -298,9 +293,12 @@ mod tests {
         ];
         for trial in 0..100 {
             let part = 1.0 + 1e-3 * f64::from(trial);
-            let mut speed = before.map(|it| it * part);
-            let mut touching = [0, 1].map(|link| Touching::new(&system, link, &at, &speed));
-            let passes = strike(&system, &mut touching, &mut speed);
+            let mut now = Coordinates {
+                place: at.clone(),
+                speed: before.map(|it| it * part).to_vec(),
+            };
+            let mut touching = [0, 1].map(|link| Touching::new(&system, link, &now));
+            let passes = strike(&system, &mut touching, &mut now.speed);
             assert!(passes <= 64, "{trial}: {passes} passes");
         }
     }

@@ -1,36 +1,30 @@
 //! What keeps closed links closed against rounding, and sets off what a seat no longer holds.
 
+use super::super::jet::dot;
 use super::impact::Touching;
-use super::jet::dot;
 use super::linear::solve;
 use super::seat::SeatLink;
-use super::system::{Hold, Mode, System};
+use super::system::{Coordinates, Hold, Mode, System};
 
 /// Takes the normal speed of a link.
-pub fn arrest(system: &System, link: usize, place: &[f64], speed: &mut [f64]) {
-    let touch = Touching::new(system, link, place, speed);
+pub fn arrest(system: &System, link: usize, now: &mut Coordinates) {
+    let touch = Touching::new(system, link, now);
     let impulse = touch.closing / system.lateral(link, link);
-    touch.press(system, impulse, speed);
+    touch.press(system, impulse, &mut now.speed);
 }
 
 /// Takes what is left of normal speed and slip from links that have none.
-pub fn keep_speed(system: &System, modes: &[Mode], place: &[f64], speed: &mut [f64]) {
-    meet(system, &kept(system, modes, place, speed), speed);
+pub fn keep_speed(system: &System, now: &mut Coordinates) {
+    meet(system, &kept(system, now), &mut now.speed);
 }
 
 /// Gives a ring at rest on its seat this velocity, with what closed links do then.
-pub fn set_off(
-    system: &System,
-    modes: &[Mode],
-    (seat, velocity): (usize, [f64; 2]),
-    place: &[f64],
-    speed: &mut [f64],
-) {
-    let mut kept = kept(system, modes, place, speed);
+pub fn set_off(system: &System, seat: usize, velocity: [f64; 2], now: &mut Coordinates) {
+    let mut kept = kept(system, now);
     for it in kept.iter_mut().filter(|it| it.link == seat) {
         it.speed -= dot(&it.direction, &velocity);
     }
-    meet(system, &kept, speed);
+    meet(system, &kept, &mut now.speed);
 }
 
 /// A condition on the speeds of a link.
@@ -44,7 +38,8 @@ struct Kept {
 }
 
 /// That closed links have no normal speed, and those without slip none.
-fn kept(system: &System, modes: &[Mode], place: &[f64], speed: &[f64]) -> Vec<Kept> {
+fn kept(system: &System, now: &Coordinates) -> Vec<Kept> {
+    let speed = &now.speed;
     let mut kept = Vec::new();
     let mut keep = |link, direction, turn, speed| {
         kept.push(Kept {
@@ -54,32 +49,34 @@ fn kept(system: &System, modes: &[Mode], place: &[f64], speed: &[f64]) -> Vec<Ke
             speed,
         });
     };
-    for (index, mode) in modes.iter().enumerate() {
-        let link = &system.links[index];
-        let turning = link.turning(speed);
-        match (link.hold, mode) {
+    for (index, link) in system.links.iter().enumerate() {
+        match (link.hold, link.mode) {
             (_, Mode::Flight)
             | (Hold::Brake(_) | Hold::Soft(_), Mode::Slide(_))
             | (Hold::Seat { .. }, _) => {}
             (Hold::Soft(_), Mode::Stick) => {
-                let touch = Touching::new(system, index, place, speed);
+                let touch = Touching::new(system, index, now);
                 let [x, y] = touch.normal;
                 keep(index, [-y, x], 1.0, touch.slip(system, speed));
             }
-            (Hold::Brake(_), Mode::Stick) => keep(index, [0.0; 2], 1.0, turning),
+            (Hold::Brake(_), Mode::Stick) => keep(index, [0.0; 2], 1.0, link.turning(speed)),
             (Hold::Wall { .. }, mode) => {
-                let touch = Touching::new(system, index, place, speed);
+                let touch = Touching::new(system, index, now);
                 let [x, y] = touch.normal;
                 keep(index, [x, y], 0.0, touch.closing);
-                if *mode == Mode::Stick {
+                if mode == Mode::Stick {
                     keep(index, [-y, x], 1.0, touch.slip(system, speed));
                 }
             }
         }
     }
-    for seat in SeatLink::all(system).filter(|it| modes[it.link] == Mode::Stick) {
-        let rate = system.links[seat.link].lateral(speed);
-        for direction in seat.directions(system, modes, place) {
+    for seat in SeatLink::all(system) {
+        let link = &system.links[seat.link];
+        if link.mode != Mode::Stick {
+            continue;
+        }
+        let rate = link.lateral(speed);
+        for direction in seat.directions(system, &now.place) {
             keep(seat.link, direction, 0.0, dot(&direction, &rate));
         }
     }

@@ -44,6 +44,11 @@ pub fn inverse(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 
 /// Solves a linear system; an unknown that the others already determine is 0.
 pub fn solve(matrix: Vec<Vec<f64>>, right: &[f64]) -> Vec<f64> {
-    let times = |line: Vec<f64>| line.iter().zip(right).map(|(a, b)| a * b).sum();
-    inverse(matrix).into_iter().map(times).collect()
+    times(&inverse(matrix), right)
+}
+
+/// A matrix times a vector.
+pub fn times(matrix: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
+    let line = |line: &Vec<f64>| line.iter().zip(vector).map(|(a, b)| a * b).sum();
+    matrix.iter().map(line).collect()
 }

@@ -13,27 +13,12 @@ use super::super::press::Press;
 use super::pull::Pull;
 use super::soft::Soft;
 use super::surroundings::{Body, Surroundings};
-use super::system::{Hold, Link, System};
+use super::system::{Hold, Link, Mode, System};
 use touchdown_base::machine::Machine;
 use touchdown_scene::{Base, Magnet, Stop, Support};
 
 /// Distance from its stop, in clearances or travels, at which a ring that the rotor strikes is on it.
 const AT_STOP: f64 = 1e-3;
-
-/// A retainer's bore.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ring {
-    /// Along the axis from the centre of mass, m.
-    pub place: f64,
-    /// Of the rotor there, m.
-    pub radius: f64,
-    /// Radial gap, m.
-    pub clearance: f64,
-    /// Coulomb's coefficient.
-    pub friction: f64,
-    /// Coefficient of restitution, 0 to 1.
-    pub restitution: f64,
-}
 
 /// Inner ring of a ball bearing, with the clearance added to the rotor's radius as its bore.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +35,16 @@ pub struct Race {
 /// a rigid one has no rebound, and one that gives way gives all back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retainer {
-    /// Place, gap and contact.
-    pub ring: Ring,
+    /// Along the axis from the centre of mass, m.
+    pub place: f64,
+    /// Of the rotor there, m.
+    pub radius: f64,
+    /// Radial gap, m.
+    pub clearance: f64,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Coefficient of restitution, 0 to 1.
+    pub restitution: f64,
     /// Under the ring.
     pub mount: Option<Support>,
     /// In the ring.
@@ -63,12 +56,12 @@ pub struct Retainer {
 impl Retainer {
     /// Of the bore.
     fn hold(&self) -> Hold {
-        let Ring {
+        let &Self {
             clearance,
             friction,
             restitution,
             ..
-        } = self.ring;
+        } = self;
         match self.press {
             Some(press) => Hold::Soft(Soft::new(clearance, friction, restitution, press)),
             None => Hold::Wall {
@@ -123,7 +116,7 @@ pub struct Bending {
 }
 
 /// Rotor and surroundings, SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CoupledMachine {
     /// kg.
     pub mass: f64,
@@ -148,28 +141,22 @@ pub struct CoupledMachine {
 impl CoupledMachine {
     /// A rotor in one ring, at its centre of mass: it never tilts.
     pub fn level(rotor: &Machine, mount: Option<Support>, race: Option<Race>) -> Self {
-        let ring = Ring {
-            place: 0.0,
-            radius: rotor.radius,
-            clearance: rotor.clearance,
-            friction: rotor.friction,
-            restitution: rotor.restitution,
-        };
         Self {
             mass: rotor.mass,
             polar_inertia: rotor.polar_inertia,
             transverse_inertia: rotor.polar_inertia,
             gravity: [0.0, -rotor.gravity],
             retainers: vec![Retainer {
-                ring,
+                place: 0.0,
+                radius: rotor.radius,
+                clearance: rotor.clearance,
+                friction: rotor.friction,
+                restitution: rotor.restitution,
                 mount,
                 race,
                 press: None,
             }],
-            unbalance: Unbalance::default(),
-            magnets: Vec::new(),
-            bending: Vec::new(),
-            base: None,
+            ..Self::default()
         }
     }
 
@@ -200,54 +187,48 @@ impl CoupledMachine {
     fn links(&self) -> Vec<Link> {
         let (mut walls, mut stops, mut brakes) = (Vec::new(), Vec::new(), Vec::new());
         let mut seats = Vec::new();
-        for (i, it) in self.retainers.iter().enumerate() {
-            let Retainer {
-                ring, mount, race, ..
-            } = it;
+        let with = |mut of: Vec<f64>, index: usize, value: f64| {
+            of[index] = value;
+            of
+        };
+        let none = vec![0.0; self.bodies()];
+        let still = vec![0.0; self.spins()];
+        for (i, ring) in self.retainers.iter().enumerate() {
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
-            let none = vec![0.0; self.bodies()];
-            let still = vec![0.0; self.spins()];
-            let with = |mut of: Vec<f64>, index: usize, value: f64| {
-                of[index] = value;
-                of
-            };
             let told = self.axis(ring.place, |mode| mode.at_rings[i]);
             walls.push(Link {
                 shares: with(told.clone(), body, -1.0),
                 arms: with(with(still.clone(), 0, ring.radius), 1 + i, -bore),
-                hold: it.hold(),
+                hold: ring.hold(),
+                mode: Mode::Flight,
                 near: 0.0,
                 told,
             });
-            let stop = mount.and_then(|mount| mount.stop);
-            let limit = mount.map_or(0.0, |mount| mount.friction);
-            let rigid = stop.filter(|stop| stop.stiffness.is_none());
-            let number = rigid.map(|_| self.retainers.len() + stops.len());
-            seats.extend((limit > 0.0).then(|| Link {
+            let own = |hold| Link {
                 shares: with(none.clone(), body, 1.0),
                 arms: still.clone(),
-                hold: Hold::Seat {
-                    limit,
-                    stop: number,
-                },
+                hold,
+                mode: Mode::Flight,
                 near: 0.0,
                 told: with(none.clone(), body, 1.0),
+            };
+            let mounted = ring.mount.and_then(|mount| mount.stop);
+            let rigid = mounted.filter(|stop| stop.stiffness.is_none());
+            let near = rigid.map_or(0.0, |stop| AT_STOP * ring.clearance.min(stop.travel));
+            let stop = rigid.map(|_| self.retainers.len() + stops.len());
+            let limit = ring.mount.map_or(0.0, |mount| mount.friction);
+            seats.extend((limit > 0.0).then(|| own(Hold::Seat { limit, stop })));
+            stops.extend(mounted.map(|stop| Link {
+                near,
+                ..own(at_stop(stop))
             }));
-            stops.extend(stop.map(|stop| Link {
-                shares: with(none.clone(), body, 1.0),
-                arms: still.clone(),
-                hold: at_stop(stop),
-                near: rigid.map_or(0.0, |stop| AT_STOP * ring.clearance.min(stop.travel)),
-                told: with(none.clone(), body, 1.0),
-            }));
-            let dry = race.map_or(0.0, |race| race.dry_drag);
+            let dry = ring.race.map_or(0.0, |race| race.dry_drag);
             brakes.extend((dry > 0.0).then(|| Link {
                 shares: none.clone(),
-                arms: with(still, 1 + i, bore),
-                hold: Hold::Brake(dry / bore),
-                near: 0.0,
-                told: none,
+                arms: with(still.clone(), 1 + i, bore),
+                told: none.clone(),
+                ..own(Hold::Brake(dry / bore))
             }));
         }
         [walls, stops, brakes, seats].concat()
@@ -291,10 +272,8 @@ impl CoupledMachine {
             on: magnet.on.is_none(),
             cut: [0.0; 2],
         };
-        let drags = self
-            .retainers
-            .iter()
-            .map(|it| it.race.map_or(0.0, |race| race.viscous_drag));
+        let races = self.retainers.iter().map(|it| it.race);
+        let drags = races.map(|race| race.map_or(0.0, |race| race.viscous_drag));
         Surroundings {
             polar_inertia: self.polar_inertia,
             bodies,
@@ -313,10 +292,7 @@ impl CoupledMachine {
             if largest > 0.0 { length / largest } else { 1.0 }
         };
         let mut mobility = vec![1.0 / self.mass, 1.0 / self.transverse_inertia];
-        let mut size = vec![
-            length,
-            reach(&mut self.retainers.iter().map(|it| it.ring.place)),
-        ];
+        let mut size = vec![length, reach(&mut self.retainers.iter().map(|it| it.place))];
         for mode in &self.bending {
             mobility.push(1.0 / mode.modal_mass);
             size.push(reach(&mut mode.at_rings.iter().copied()));
@@ -325,10 +301,8 @@ impl CoupledMachine {
             mobility.push(over(it.mount.map(|mount| mount.mass)));
             size.push(length);
         }
-        let races = self
-            .retainers
-            .iter()
-            .map(|it| over(it.race.map(|race| race.inertia)));
+        let races = self.retainers.iter().map(|it| it.race);
+        let races = races.map(|race| over(race.map(|race| race.inertia)));
         let spins = [1.0 / self.polar_inertia].into_iter().chain(races);
         let base = self.base.map(|_| 0.0);
         System {

@@ -1,7 +1,7 @@
 //! A magnet in a machine: linear, and on each axis cut off at its greatest force.
 
-use super::jet::Jet;
-use super::share::{Shared, shared};
+use super::super::jet::{Jet, Shared, shared, unsigned};
+use super::system::Coordinates;
 use super::tape::Term;
 use std::ops::{Add, Mul};
 use touchdown_scene::Magnet;
@@ -24,11 +24,11 @@ pub struct Pull {
 
 impl Pull {
     /// Force without limit on each axis, N; `constant` makes a value that stays.
-    fn linear<T>(&self, place: &[T], speed: &[T], constant: impl Fn(f64) -> T) -> [T; 2]
+    fn linear<T>(&self, now: &Coordinates<T>, constant: impl Fn(f64) -> T) -> [T; 2]
     where
         T: Shared + Add<Output = T> + Mul<f64, Output = T>,
     {
-        let (at, rate) = (shared(&self.shares, place), shared(&self.shares, speed));
+        let [at, rate] = [&now.place, &now.speed].map(|of| shared(&self.shares, of));
         [0, 1].map(|axis| {
             let held = at[axis] * self.magnet.stiffness + rate[axis] * -self.magnet.damping;
             held + constant(self.magnet.force[axis])
@@ -36,9 +36,9 @@ impl Pull {
     }
 
     /// Adds its force on each coordinate.
-    pub fn push<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>], forces: &mut [Term<'t>]) {
-        let constant = |value| place[0].constant(value);
-        let linear = self.linear(place, speed, constant);
+    pub fn push<'t>(&self, now: &Coordinates<Term<'t>>, forces: &mut [Term<'t>]) {
+        let constant = |value| now.place[0].constant(value);
+        let linear = self.linear(now, constant);
         for axis in 0..2 {
             let force = match self.magnet.limit {
                 Some(limit) if self.cut[axis] != 0.0 => constant(self.cut[axis] * limit),
@@ -52,9 +52,9 @@ impl Pull {
     }
 
     /// Cuts it off on the axes where its linear force is above the limit.
-    pub fn cut_off(&mut self, place: &[f64], speed: &[f64]) {
+    pub fn cut_off(&mut self, now: &Coordinates) {
         if let Some(limit) = self.magnet.limit {
-            let linear = self.linear(place, speed, |value| value);
+            let linear = self.linear(now, |value| value);
             let cut = |force: f64| {
                 if force.abs() > limit {
                     force.signum()
@@ -67,7 +67,7 @@ impl Pull {
     }
 
     /// Switches it as it is at `time` (s since the release); when it next changes, s.
-    pub fn reach(&mut self, time: f64, place: &[f64], speed: &[f64]) -> f64 {
+    pub fn reach(&mut self, time: f64, now: &Coordinates) -> f64 {
         let Some([from, until]) = self.magnet.on else {
             return f64::INFINITY;
         };
@@ -75,18 +75,18 @@ impl Pull {
         let was = self.on;
         self.on = reached(from) && !reached(until);
         if self.on && !was {
-            self.cut_off(place, speed);
+            self.cut_off(now);
         }
         let ahead = [from, until].into_iter().filter(|it| !reached(*it));
         ahead.fold(f64::INFINITY, f64::min)
     }
 
     /// Functions whose first fall below zero ends what acts on an axis: with the axis, and the cut that follows.
-    pub fn ends(&self, place: &[Jet], speed: &[Jet]) -> Vec<(Jet, usize, f64)> {
+    pub fn ends(&self, path: &Coordinates<Jet>) -> Vec<(Jet, usize, f64)> {
         let Some(limit) = self.magnet.limit.filter(|_| self.on) else {
             return Vec::new();
         };
-        let linear = self.linear(place, speed, Jet::constant);
+        let linear = self.linear(path, Jet::constant);
         let ends = |axis: usize| match self.cut[axis] {
             0.0 => [1.0, -1.0]
                 .map(|sign| (Jet::constant(limit) + linear[axis] * -sign, axis, sign))
@@ -99,12 +99,7 @@ impl Pull {
     /// What those functions are made of, without signs, N: from what the displacements, their rates and the rates of
     /// those within `span` (s) are made of.
     pub fn size(&self, [place, speed, push]: [&[f64]; 3], span: f64) -> f64 {
-        let of = |of: &[f64]| {
-            let parts = self.shares.iter().zip(of.chunks_exact(2));
-            parts.fold(0.0, |sum, (share, of)| {
-                sum + share.abs() * (of[0].abs() + of[1].abs())
-            })
-        };
+        let of = |of: &[f64]| unsigned(&self.shares, of);
         let [fx, fy] = self.magnet.force;
         let held = self.magnet.stiffness.abs() * (of(place) + span * of(speed));
         let damped = self.magnet.damping * (of(speed) + span * of(push));

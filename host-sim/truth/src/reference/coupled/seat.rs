@@ -8,7 +8,7 @@
 //! direction in which it pulled. Where it is not held at that speed it goes on so. The direction of a slow slide follows
 //! the force within m v/F, which bounds the steps: a run with a lower cut-off would not end where the force turns.
 
-use super::jet::{Jet, dot};
+use super::super::jet::{Jet, dot};
 use super::system::{Hold, Mode, System};
 use super::tape::Term;
 use super::unknown::Unknown;
@@ -40,15 +40,16 @@ impl SeatLink {
     }
 
     /// Those of which the ring slides.
-    pub fn sliding(system: &System, modes: &[Mode]) -> impl Iterator<Item = Self> {
-        Self::all(system).filter(|it| modes[it.link] != Mode::Stick)
+    pub fn sliding(system: &System) -> impl Iterator<Item = Self> {
+        Self::all(system).filter(|it| system.links[it.link].mode != Mode::Stick)
     }
 
     /// In which the ring at rest is held.
-    pub fn directions(&self, system: &System, modes: &[Mode], place: &[f64]) -> Vec<[f64; 2]> {
-        match self.stop.filter(|stop| modes[*stop] != Mode::Flight) {
+    pub fn directions(&self, system: &System, place: &[f64]) -> Vec<[f64; 2]> {
+        let stop = self.stop.map(|stop| &system.links[stop]);
+        match stop.filter(|stop| stop.mode != Mode::Flight) {
             Some(stop) => {
-                let [x, y] = system.links[stop].lateral(place);
+                let [x, y] = stop.lateral(place);
                 let distance = f64::hypot(x, y);
                 vec![[-y / distance, x / distance]]
             }
@@ -74,14 +75,9 @@ impl SeatLink {
     }
 
     /// The unknown forces that hold the ring at rest.
-    pub fn hold<'t>(
-        &self,
-        system: &System,
-        modes: &[Mode],
-        place: &[Term<'t>],
-    ) -> Vec<Unknown<'t>> {
+    pub fn hold<'t>(&self, system: &System, place: &[Term<'t>]) -> Vec<Unknown<'t>> {
         let values: Vec<f64> = place.iter().map(Term::value).collect();
-        let directions = self.directions(system, modes, &values);
+        let directions = self.directions(system, &values);
         let held = |direction: [f64; 2]| {
             Unknown::at_rest(self.link, direction.map(|part| place[0].constant(part)))
         };
@@ -90,15 +86,11 @@ impl SeatLink {
 
     /// Adds the sliding ring's friction to the accelerations.
     pub fn brake<'t>(&self, system: &System, speed: &[Term<'t>], acceleration: &mut [Term<'t>]) {
-        let link = &system.links[self.link];
-        let w = link.lateral(speed);
+        let w = system.links[self.link].lateral(speed);
         let slowness = dot(&w, &w).power(-0.5);
         let direction = w.map(|part| part * slowness);
-        for i in 0..system.first_spin() {
-            let part = link.shares[i / 2] * system.mobility[i];
-            if part != 0.0 {
-                acceleration[i] = acceleration[i] + direction[i % 2] * (-self.limit * part);
-            }
+        for (i, part) in system.moved(self.link) {
+            acceleration[i] = acceleration[i] + direction[i % 2] * (-self.limit * part);
         }
     }
 

@@ -6,8 +6,8 @@
 //! Cut-off: F has no series at 0, so the force is 0 up to a depth of 1e-9 of the clearance, and again below half of it.
 //! That of a ring's stop has one: it has no cut-off.
 
+use super::super::jet::Jet;
 use super::super::press::{Press, PressShape};
-use super::jet::Jet;
 use super::tape::Term;
 
 /// Depth from which the wall presses, in clearances.
@@ -30,7 +30,7 @@ pub struct Soft {
     /// a.
     damping: f64,
     /// Of what is in the wall: a over the speed at which it entered, s/m.
-    within: Option<f64>,
+    pub within: Option<f64>,
     /// Whether it is a ring's stop.
     pub is_stop: bool,
 }
@@ -67,16 +67,6 @@ impl Soft {
         self.within = Some(self.damping / closing.max(self.press.slowest));
     }
 
-    /// What was in it has left.
-    pub fn leave(&mut self) {
-        self.within = None;
-    }
-
-    /// Whether something is in it.
-    pub fn is_within(&self) -> bool {
-        self.within.is_some()
-    }
-
     /// Radius at which it is entered, m.
     pub fn entry(&self) -> f64 {
         let cut_off = if self.is_stop { 0.0 } else { ENTRY };
@@ -101,11 +91,6 @@ impl Soft {
     /// Whether a distance (m) from its centre is deeper than its law tells of.
     pub fn is_beyond(&self, distance: f64) -> bool {
         self.press.is_beyond(distance - self.clearance)
-    }
-
-    /// Damping of what is in it, s/m.
-    pub fn within(&self) -> Option<f64> {
-        self.within
     }
 
     /// Force at a depth, N, without damping.

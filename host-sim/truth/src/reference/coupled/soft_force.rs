@@ -1,8 +1,7 @@
 //! The forces of walls that give way, as series.
 
-use super::jet::dot;
-use super::soft::Soft;
-use super::system::{Hold, Link, Mode, System};
+use super::super::jet::dot;
+use super::system::{Coordinates, Hold, Link, Mode, System};
 use super::tape::Term;
 use super::unknown::Unknown;
 
@@ -32,14 +31,14 @@ pub struct SoftForce<'t> {
 impl<'t> SoftForce<'t> {
     /// What presses at this wall, or did before it is left.
     fn at(
-        soft: &Soft,
         (link, of): (usize, &Link),
-        mode: Mode,
-        place: &[Term<'t>],
-        speed: &[Term<'t>],
+        Coordinates { place, speed }: &Coordinates<Term<'t>>,
     ) -> Option<Self> {
+        let Hold::Soft(soft) = of.hold else {
+            return None;
+        };
         let constant = |value| place[0].constant(value);
-        let within = soft.within()?;
+        let within = soft.within?;
         let (q, w) = (of.lateral(place), of.lateral(speed));
         let distance = dot(&q, &q).power(0.5);
         let nearness = distance.power(-1.0);
@@ -48,7 +47,7 @@ impl<'t> SoftForce<'t> {
         let depth = distance - constant(soft.clearance);
         let (rate, passing) = (dot(&[x, y], &w), dot(&along, &w));
         let push = rate * within + constant(1.0);
-        let (spring, normal) = match mode {
+        let (spring, normal) = match of.mode {
             Mode::Flight => (constant(0.0), constant(0.0)),
             _ => {
                 let spring = soft.spring(depth);
@@ -71,40 +70,25 @@ impl<'t> SoftForce<'t> {
     }
 
     /// All of a system.
-    pub fn all(
-        system: &System,
-        modes: &[Mode],
-        place: &[Term<'t>],
-        speed: &[Term<'t>],
-    ) -> Vec<Self> {
+    pub fn all(system: &System, now: &Coordinates<Term<'t>>) -> Vec<Self> {
         let links = system.links.iter().enumerate();
-        let pressed = |(index, link): (usize, &Link)| match link.hold {
-            Hold::Soft(soft) => Self::at(&soft, (index, link), modes[index], place, speed),
-            _ => None,
-        };
-        links.filter_map(pressed).collect()
+        links.filter_map(|link| Self::at(link, now)).collect()
     }
 
     /// Adds its force to the accelerations.
-    pub fn push(&self, system: &System, mode: Mode, acceleration: &mut [Term<'t>]) {
+    pub fn push(&self, system: &System, acceleration: &mut [Term<'t>]) {
         let link = &system.links[self.link];
-        let rubbed = match mode {
+        let rubbed = match link.mode {
             Mode::Flight => return,
             Mode::Slide(sign) => -sign * link.friction(),
             Mode::Stick => 0.0,
         };
         let force = [0, 1].map(|k| (self.inward[k] + self.along[k] * rubbed) * self.normal);
-        for i in 0..system.first_spin() {
-            let part = link.shares[i / 2] * system.mobility[i];
-            if part != 0.0 {
-                acceleration[i] = acceleration[i] + force[i % 2] * part;
-            }
+        for (i, part) in system.moved(self.link) {
+            acceleration[i] = acceleration[i] + force[i % 2] * part;
         }
-        for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
-            let part = arm * system.mobility[i] * rubbed;
-            if part != 0.0 {
-                acceleration[i] = acceleration[i] + self.normal * part;
-            }
+        for (i, part) in system.turned(self.link, rubbed) {
+            acceleration[i] = acceleration[i] + self.normal * part;
         }
     }
 

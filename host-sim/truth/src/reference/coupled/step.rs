@@ -1,15 +1,14 @@
 //! A step of smooth motion: its Taylor series, and where it ends.
 
+use super::super::jet::{Jet, dot};
 use super::forces::Forces;
-use super::jet::{Jet, ORDER, constants, dot};
 use super::pull::Pull;
-use super::seat::SeatLink;
+use super::seat::{SLOWEST, SeatLink};
 use super::soft_force::SoftForce;
 use super::surroundings::Surroundings;
-use super::system::{Hold, Link, Mode, System};
+use super::system::{Coordinates, Hold, Link, Mode, System};
 use super::tape::{Tape, Term};
-use crate::reference::roots::{Fall, fall};
-use std::iter::repeat;
+use crate::reference::roots::{Fall, fall, leading};
 
 /// Rounding of what a contact's forces and slips are made of, relative.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -34,8 +33,6 @@ pub struct Bounds {
     pub longest: f64,
     /// Unit of speed, m/s.
     pub speed: f64,
-    /// Speed at which a sliding ring is at rest, m/s.
-    pub slowest: f64,
 }
 
 /// How a step ends; a number is that of the link.
@@ -89,21 +86,19 @@ pub struct Step {
     pub ending: Ending,
     /// Of making it, in products of series.
     pub cost: usize,
-    place: Vec<Jet>,
-    speed: Vec<Jet>,
+    path: Coordinates<Jet>,
     held: Vec<[Jet; 2]>,
 }
 
 impl Step {
     /// Nothing moves, and it is over at once.
-    pub fn none(place: &[f64], speed: &[f64], links: usize) -> Self {
+    pub fn none(at: &Coordinates, links: usize) -> Self {
         Self {
             span: 1.0,
             end: 0.0,
             ending: Ending::Step,
             cost: 0,
-            place: constants(place),
-            speed: constants(speed),
+            path: at.map(|value| Jet::constant(*value)),
             held: vec![[Jet::ZERO; 2]; links],
         }
     }
@@ -112,68 +107,59 @@ impl Step {
     pub fn new(
         system: &System,
         surroundings: &Surroundings,
-        modes: &[Mode],
-        (place, speed): (&[f64], &[f64]),
+        start: &Coordinates,
         bounds: Bounds,
     ) -> Self {
         let tape = Tape::new();
-        let (places, speeds) = (tape.start(place), tape.start(speed));
-        let forces = Forces::new(&tape, system, surroundings, modes, &places, &speeds);
-        let clock = clock(system, modes, speed, &forces);
+        let now = start.map(|value| tape.given(*value));
+        let forces = Forces::new(&tape, system, surroundings, &now);
+        let clock = clock(system, &start.speed, &forces);
         tape.carry(|before, order, next| {
             let part = clock / order as f64;
-            let rates = places.iter().zip(&speeds).zip(&forces.acceleration);
+            let rates = now.place.iter().zip(&now.speed).zip(&forces.acceleration);
             for ((place, speed), acceleration) in rates {
                 next[place.index] = part * before[speed.index];
                 next[speed.index] = part * before[acceleration.index];
             }
         });
-        let jets = |of: &[Term]| of.iter().map(Term::jet).collect::<Vec<Jet>>();
-        let series = [jets(&places), jets(&speeds)];
-        let ticks = ticks(system, modes, &series, &forces, bounds).min(bounds.longest / clock);
-        let scaled = |of: &[Jet]| of.iter().map(|jet| jet.scaled(ticks)).collect();
+        let path = now.map(Term::jet);
+        let ticks = ticks(system, &path, &forces, bounds).min(bounds.longest / clock);
         let held = |of: &[Term; 2]| of.map(|it| it.jet().scaled(ticks));
         let mut step = Self {
             span: clock * ticks,
             end: 1.0,
             ending: Ending::Step,
             cost: tape.cost(),
-            place: scaled(&series[0]),
-            speed: scaled(&series[1]),
+            path: path.map(|jet| jet.scaled(ticks)),
             held: forces.held.iter().map(held).collect(),
         };
         let pushes: Vec<f64> = forces.acceleration.iter().map(Term::size).collect();
-        let lateral = [place, speed, &pushes].map(|of| system.lateral_size(of));
-        for (link, mode) in modes.iter().enumerate() {
-            let sizes = Magnitudes {
-                lateral,
-                slip: system.links[link].slip_size(speed),
-                slip_push: system.links[link].slip_size(&pushes),
-                held: forces.held[link].map(|it| it.size()),
-            };
-            step.locate(&system.links[link], link, *mode, &sizes);
+        let made_of = [&start.place, &start.speed, &pushes].map(Vec::as_slice);
+        let lateral = made_of.map(|of| system.lateral_size(of));
+        let sizes = |index: usize| Magnitudes {
+            lateral,
+            slip: system.links[index].slip_size(&start.speed),
+            slip_push: system.links[index].slip_size(&pushes),
+            held: forces.held[index].map(|it| it.size()),
+        };
+        for (index, link) in system.links.iter().enumerate() {
+            step.locate(link, index, &sizes(index));
         }
         for seat in SeatLink::all(system) {
-            let held = forces.held[seat.link].map(|it| it.size());
-            step.seat(system, &seat, modes[seat.link], held, bounds.slowest);
+            step.seat(system, &seat, sizes(seat.link).held, bounds);
         }
         for it in &forces.pressed {
-            step.pressed(system, it, modes[it.link], &forces, (ticks, lateral));
+            step.pressed(&system.links[it.link], it, ticks, &sizes(it.link));
         }
         for (number, pull) in surroundings.magnets.iter().enumerate() {
-            step.cut_off(number, pull, [place, speed, &pushes]);
+            step.cut_off(number, pull, made_of);
         }
         step
     }
 
     /// Coordinates at a part of the span.
-    pub fn place(&self, part: f64) -> Vec<f64> {
-        self.place.iter().map(|jet| jet.at(part)).collect()
-    }
-
-    /// Their rates.
-    pub fn speed(&self, part: f64) -> Vec<f64> {
-        self.speed.iter().map(|jet| jet.at(part)).collect()
+    pub fn at(&self, part: f64) -> Coordinates {
+        self.path.map(|jet| jet.at(part))
     }
 
     /// Normal force at a link and friction without slip; or what holds a ring at its seat: N.
@@ -181,7 +167,8 @@ impl Step {
         self.held[link].map(|force| force.at(part))
     }
 
-    fn locate(&mut self, link: &Link, index: usize, mode: Mode, sizes: &Magnitudes) {
+    fn locate(&mut self, link: &Link, index: usize, sizes: &Magnitudes) {
+        let mode = link.mode;
         let [normal, grip] = self.held[index];
         let [normal_size, grip_size] = sizes.held;
         let slip_rounding = ROUNDING * (sizes.slip + sizes.slip_push * self.span);
@@ -189,7 +176,7 @@ impl Step {
             (Mode::Flight, Hold::Wall { clearance, .. }) => {
                 self.approach(link, index, clearance, sizes);
             }
-            (Mode::Flight, Hold::Soft(soft)) if !soft.is_within() => {
+            (Mode::Flight, Hold::Soft(soft)) if soft.within.is_none() => {
                 self.approach(link, index, soft.entry(), sizes);
             }
             (Mode::Flight, Hold::Brake(_)) | (_, Hold::Seat { .. } | Hold::Soft(_)) => {}
@@ -212,13 +199,13 @@ impl Step {
             && sign != 0.0
             && !matches!(link.hold, Hold::Soft(_))
         {
-            let q = link.lateral(&self.place);
-            let w = link.lateral(&self.speed);
+            let q = link.lateral(&self.path.place);
+            let w = link.lateral(&self.path.speed);
             let along = match link.clearance() {
                 Some(clearance) => (q[0] * w[1] - q[1] * w[0]) * (1.0 / clearance),
                 None => Jet::ZERO,
             };
-            let slip = (along + link.turning(&self.speed)) * sign;
+            let slip = (along + link.turning(&self.path.speed)) * sign;
             self.earlier(&slip, [slip_rounding; 3], Ending::SlipEnds(index));
         }
     }
@@ -226,7 +213,7 @@ impl Step {
     /// Where a link that is apart comes to this distance.
     fn approach(&mut self, link: &Link, index: usize, distance: f64, sizes: &Magnitudes) {
         let unit = 1.0 / distance;
-        let q = link.lateral(&self.place).map(|q| q * unit);
+        let q = link.lateral(&self.path.place).map(|q| q * unit);
         let gap = (Jet::constant(1.0) - dot(&q, &q)) * 0.5;
         let rounding = self.gap_rounding(distance, sizes.lateral);
         self.earlier(&gap, rounding, Ending::Touch(index));
@@ -240,64 +227,49 @@ impl Step {
         [place, way, way * way + pushed].map(|size| GAP_ROUNDING * size)
     }
 
-    fn pressed(
-        &mut self,
-        system: &System,
-        it: &SoftForce,
-        mode: Mode,
-        forces: &Forces,
-        (ticks, lateral): (f64, [f64; 3]),
-    ) {
-        let link = &system.links[it.link];
+    fn pressed(&mut self, link: &Link, it: &SoftForce, ticks: f64, sizes: &Magnitudes) {
         let Hold::Soft(soft) = link.hold else { return };
         let jet = |of: Term| of.jet().scaled(ticks);
-        let rounding = self.gap_rounding(soft.clearance, lateral);
+        let rounding = self.gap_rounding(soft.clearance, sizes.lateral);
         self.earlier(&soft.exit(jet(it.depth)), rounding, Ending::Left(it.link));
         let rounding = CUT_ROUNDING * it.push.size();
         let push = jet(it.push);
-        if mode == Mode::Flight {
+        if link.mode == Mode::Flight {
             self.earlier(&(push * -1.0), [rounding; 3], Ending::PressedAgain(it.link));
             return;
         }
         self.earlier(&push, [rounding; 3], Ending::LiftOff(it.link));
-        match mode {
+        match link.mode {
             Mode::Slide(sign) if sign != 0.0 => {
                 let rounding = ROUNDING * it.slip.size();
                 let slip = jet(it.slip) * sign;
                 self.earlier(&slip, [rounding; 3], Ending::SlipEnds(it.link));
             }
             Mode::Stick => {
-                let [normal, grip] = forces.held[it.link];
-                let rounding = ROUNDING * (normal.size() * soft.friction + grip.size());
-                let most = jet(normal) * soft.friction;
-                self.hold(it.link, &most, &jet(grip), rounding);
+                let [normal, grip] = self.held[it.link];
+                let [normal_size, grip_size] = sizes.held;
+                let rounding = ROUNDING * (normal_size * soft.friction + grip_size);
+                self.hold(it.link, &(normal * soft.friction), &grip, rounding);
             }
             _ => {}
         }
     }
 
-    fn seat(
-        &mut self,
-        system: &System,
-        seat: &SeatLink,
-        mode: Mode,
-        sizes: [f64; 2],
-        slowest: f64,
-    ) {
-        if mode == Mode::Stick {
+    fn seat(&mut self, system: &System, seat: &SeatLink, sizes: [f64; 2], bounds: Bounds) {
+        if system.links[seat.link].mode == Mode::Stick {
             let size = (sizes[0] + sizes[1]) / seat.limit;
             let rounding = ROUNDING * (1.0 + size * size);
             let spare = seat.spare(&self.held[seat.link]);
             self.earlier(&spare, [rounding; 3], Ending::GripLost(seat.link, 0.0));
         } else {
-            let haste = seat.haste(system, &self.speed, slowest);
+            let haste = seat.haste(system, &self.path.speed, SLOWEST * bounds.speed);
             self.earlier(&haste, [0.0; 3], Ending::SlipEnds(seat.link));
         }
     }
 
     fn cut_off(&mut self, magnet: usize, pull: &Pull, of: [&[f64]; 3]) {
         let rounding = CUT_ROUNDING * pull.size(of, self.span);
-        for (falls, axis, sign) in pull.ends(&self.place, &self.speed) {
+        for (falls, axis, sign) in pull.ends(&self.path) {
             self.earlier(&falls, [rounding; 3], Ending::Cut { magnet, axis, sign });
         }
     }
@@ -310,7 +282,10 @@ impl Step {
     }
 
     fn earlier(&mut self, falls: &Jet, tolerances: [f64; 3], ending: Ending) {
-        let (end, ending) = match first_fall(falls.terms(), tolerances) {
+        let Some(falls) = leading(&falls.0, tolerances) else {
+            return;
+        };
+        let (end, ending) = match fall(falls) {
             Fall::Never => return,
             Fall::At(end) => (end, ending),
             Fall::After(end) => (end, Ending::Step),
@@ -323,8 +298,8 @@ impl Step {
 
 /// Unit of time of the terms, s: 1, or a power of two in which those of what is slow or has hardly begun are no large
 /// numbers.
-fn clock(system: &System, modes: &[Mode], speed: &[f64], forces: &Forces) -> f64 {
-    let slides = SeatLink::sliding(system, modes).map(|seat| {
+fn clock(system: &System, speed: &[f64], forces: &Forces) -> f64 {
+    let slides = SeatLink::sliding(system).map(|seat| {
         let acceleration = forces.acceleration.iter().map(Term::value);
         seat.time(system, speed, &acceleration.collect::<Vec<f64>>())
     });
@@ -335,31 +310,18 @@ fn clock(system: &System, modes: &[Mode], speed: &[f64], forces: &Forces) -> f64
 }
 
 /// Time that series of places and speeds are good for, in the unit of their terms.
-fn ticks(
-    system: &System,
-    modes: &[Mode],
-    [place, speed]: &[Vec<Jet>; 2],
-    forces: &Forces,
-    bounds: Bounds,
-) -> f64 {
-    let reach = |jet: &Jet, size: f64| {
-        [ORDER - 1, ORDER]
-            .map(|k| (bounds.accuracy * size / jet.terms()[k].abs()).powf(1.0 / k as f64))
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
-    };
-    let places = place.iter().zip(&system.size);
+fn ticks(system: &System, path: &Coordinates<Jet>, forces: &Forces, bounds: Bounds) -> f64 {
+    let reach = |jet: &Jet, size: f64| jet.reach(bounds.accuracy * size);
+    let places = path.place.iter().zip(&system.size);
     let places = places.map(|(jet, size)| reach(jet, *size));
     let pressed = || {
-        forces
-            .pressed
-            .iter()
-            .filter(|it| modes[it.link] != Mode::Flight)
+        let all = forces.pressed.iter();
+        all.filter(|it| system.links[it.link].mode != Mode::Flight)
     };
-    let slides = SeatLink::sliding(system, modes)
+    let slides = SeatLink::sliding(system)
         .map(|seat| seat.link)
         .chain(pressed().map(|it| it.link))
-        .flat_map(|link| system.links[link].lateral(speed))
+        .flat_map(|link| system.links[link].lateral(&path.speed))
         .map(|jet| reach(&jet, SLIDES * bounds.speed));
     let curved = pressed().filter(|it| !it.is_stop);
     let presses = curved.map(|it| reach(&it.spring.jet(), PRESSES * it.spring.value()));
@@ -367,18 +329,4 @@ fn ticks(
         .chain(slides)
         .chain(presses)
         .fold(f64::INFINITY, f64::min)
-}
-
-/// Where a function that is not negative at 0 first falls below zero, without passing a fall by.
-///
-/// Leading coefficients within `tolerances` (the last is that of all further ones too) are taken as
-/// zero, so a function that starts on zero is judged by the way it leaves it.
-fn first_fall(coefficients: &[f64], tolerances: [f64; 3]) -> Fall {
-    let [first, second, further] = tolerances;
-    let tolerances = [first, second].into_iter().chain(repeat(further));
-    let matters = |(c, tolerance): (&f64, f64)| c.abs() > tolerance;
-    let Some(first) = coefficients.iter().zip(tolerances).position(matters) else {
-        return Fall::Never;
-    };
-    fall(&coefficients[first..])
 }

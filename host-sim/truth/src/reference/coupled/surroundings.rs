@@ -2,6 +2,7 @@
 //! and drag.
 
 use super::pull::Pull;
+use super::system::Coordinates;
 use super::tape::Term;
 
 /// What acts on a body by itself.
@@ -36,7 +37,8 @@ pub struct Surroundings {
 
 impl Surroundings {
     /// Force or torque on each coordinate.
-    pub fn forces<'t>(&self, place: &[Term<'t>], speed: &[Term<'t>]) -> Vec<Term<'t>> {
+    pub fn forces<'t>(&self, now: &Coordinates<Term<'t>>) -> Vec<Term<'t>> {
+        let Coordinates { place, speed } = now;
         let constant = |value| place[0].constant(value);
         let spins = 2 * self.bodies.len();
         let mut forces = Vec::with_capacity(place.len());
@@ -63,7 +65,7 @@ impl Surroundings {
             forces[3] = forces[3] + gyroscopic * speed[2];
         }
         for pull in self.magnets.iter().filter(|it| it.on) {
-            pull.push(place, speed, &mut forces);
+            pull.push(now, &mut forces);
         }
         if self.base
             && let Some(angle) = place.last()
@@ -98,16 +100,15 @@ impl Surroundings {
     }
 
     /// Makes them those of `time` (s since the release) and after; when they next change, s.
-    pub fn reach(&mut self, time: f64, place: &[f64], speed: &[f64]) -> f64 {
-        let magnets = self.magnets.iter_mut();
-        let next = magnets.map(|it| it.reach(time, place, speed));
+    pub fn reach(&mut self, time: f64, now: &Coordinates) -> f64 {
+        let next = self.magnets.iter_mut().map(|it| it.reach(time, now));
         next.fold(f64::INFINITY, f64::min)
     }
 
     /// Cuts the magnets' forces off where they are above their limits, once a speed or a place has jumped.
-    pub fn cut_off(&mut self, place: &[f64], speed: &[f64]) {
+    pub fn cut_off(&mut self, now: &Coordinates) {
         for pull in &mut self.magnets {
-            pull.cut_off(place, speed);
+            pull.cut_off(now);
         }
     }
 }

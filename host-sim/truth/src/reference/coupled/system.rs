@@ -3,8 +3,27 @@
 //! Coordinates are x and y of each body, then the angles. A "body" may also be the tilt of another,
 //! or a mode of its bending. The mass matrix is constant and diagonal.
 
-use super::share::{Shared, shared, weighted};
+use super::super::jet::{Shared, shared, unsigned, weighted};
 use super::soft::Soft;
+
+/// Coordinates of a system, and their rates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinates<T = f64> {
+    /// x and y of each body, then the angles.
+    pub place: Vec<T>,
+    /// Their rates.
+    pub speed: Vec<T>,
+}
+
+impl<T> Coordinates<T> {
+    /// What becomes of each.
+    pub fn map<U>(&self, change: impl Fn(&T) -> U) -> Coordinates<U> {
+        Coordinates {
+            place: self.place.iter().map(&change).collect(),
+            speed: self.speed.iter().map(&change).collect(),
+        }
+    }
+}
 
 /// What a link does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +70,8 @@ pub struct Link {
     pub arms: Vec<f64>,
     /// What holds it.
     pub hold: Hold,
+    /// What it does now.
+    pub mode: Mode,
     /// Of a rigid stop: distance from it within which a ring that is struck towards it is at rest on it, m; else 0.
     pub near: f64,
     /// The position told in happenings: the part that each body has in it.
@@ -70,10 +91,7 @@ impl Link {
 
     /// What displacement is made of, without signs.
     pub fn lateral_size(&self, of: &[f64]) -> f64 {
-        let parts = self.shares.iter().zip(of.chunks_exact(2));
-        parts.fold(0.0, |sum, (share, of)| {
-            sum + share.abs() * (of[0].abs() + of[1].abs())
-        })
+        unsigned(&self.shares, of)
     }
 
     /// What slip is made of, without signs.
@@ -163,6 +181,21 @@ impl System {
         for (arm, i) in arms.iter().zip(self.first_spin()..) {
             speed[i] += self.mobility[i] * arm * turn;
         }
+    }
+
+    /// The bodies' coordinates that a force at a link moves, and the acceleration that 1 N of it gives them.
+    pub fn moved(&self, link: usize) -> impl Iterator<Item = (usize, f64)> {
+        let part = move |i: usize| self.links[link].shares[i / 2] * self.mobility[i];
+        (0..self.first_spin())
+            .map(move |i| (i, part(i)))
+            .filter(|(_, part)| *part != 0.0)
+    }
+
+    /// The same of the spins, where `turn` of the force turns them.
+    pub fn turned(&self, link: usize, turn: f64) -> impl Iterator<Item = (usize, f64)> {
+        let arms = self.links[link].arms.iter().zip(self.first_spin()..);
+        arms.map(move |(arm, i)| (i, arm * self.mobility[i] * turn))
+            .filter(|(_, part)| *part != 0.0)
     }
 
     /// Kinetic energy, J.

@@ -1,7 +1,7 @@
 //! Unknown forces of closed links, and the conditions that they keep.
 
-use super::jet::dot;
-use super::system::{Link, Mode, System};
+use super::super::jet::dot;
+use super::system::{Coordinates, Link, Mode, System};
 use super::tape::{Tape, Term};
 
 /// What an unknown force is in its link.
@@ -33,14 +33,12 @@ impl<'t> Unknown<'t> {
     pub fn of_wall(
         (index, link): (usize, &Link),
         clearance: f64,
-        mode: Mode,
-        place: &[Term<'t>],
-        speed: &[Term<'t>],
+        now: &Coordinates<Term<'t>>,
     ) -> Vec<Self> {
-        let [x, y] = link.lateral(place).map(|q| q * (1.0 / clearance));
-        let w = link.lateral(speed);
+        let [x, y] = link.lateral(&now.place).map(|q| q * (1.0 / clearance));
+        let w = link.lateral(&now.speed);
         let (inward, along) = ([-x, -y], [-y, x]);
-        let rubbed = match mode {
+        let rubbed = match link.mode {
             Mode::Slide(sign) => -sign * link.friction(),
             _ => 0.0,
         };
@@ -56,7 +54,7 @@ impl<'t> Unknown<'t> {
         let grip = || Self::without_slip(index, along, none);
         [normal]
             .into_iter()
-            .chain((mode == Mode::Stick).then(grip))
+            .chain((link.mode == Mode::Stick).then(grip))
             .collect()
     }
 
@@ -82,19 +80,12 @@ impl<'t> Unknown<'t> {
 
     /// Adds to the coordinates' accelerations what the force makes of them.
     pub fn push(&self, system: &System, force: Term<'t>, parts: &mut [Vec<(Term<'t>, f64)>]) {
-        let link = &system.links[self.link];
         let vector = self.force.0.map(|direction| force * direction);
-        for i in 0..system.first_spin() {
-            let part = link.shares[i / 2] * system.mobility[i];
-            if part != 0.0 {
-                parts[i].push((vector[i % 2], part));
-            }
+        for (i, part) in system.moved(self.link) {
+            parts[i].push((vector[i % 2], part));
         }
-        for (arm, i) in link.arms.iter().zip(system.first_spin()..) {
-            let part = arm * system.mobility[i] * self.force.1;
-            if part != 0.0 {
-                parts[i].push((force, part));
-            }
+        for (i, part) in system.turned(self.link, self.force.1) {
+            parts[i].push((force, part));
         }
     }
 

@@ -1,9 +1,8 @@
 //! Links that touch: impacts, and where a bounce series ends.
 
+use super::super::super::jet::shared;
 use super::super::impact::{self, Touching};
 use super::super::keep;
-use super::super::seat::SeatLink;
-use super::super::share::shared;
 use super::super::system::{Hold, Mode};
 use super::{Motion, ON_WALL};
 use touchdown_base::history::{Impact, ModelEvent, RotorState};
@@ -19,10 +18,10 @@ const MANY_IMPACTS: f64 = 250.0;
 impl Motion {
     /// Positions outside their walls are taken back.
     pub(super) fn take_inside(&mut self) {
-        for link in 0..self.modes.len() {
+        for link in 0..self.system.links.len() {
             let clearance = self.system.links[link].clearance();
             if clearance.is_some_and(|clearance| self.distance(link) > clearance) {
-                keep::keep_place(&self.system, link, &mut self.place);
+                keep::keep_place(&self.system, link, &mut self.now.place);
             }
         }
     }
@@ -36,39 +35,40 @@ impl Motion {
         let touches = |link: &usize| match self.system.links[*link].rigid() {
             None => false,
             Some(clearance) => {
-                self.modes[*link] != Mode::Flight
+                self.mode(*link) != Mode::Flight
                     || Some(*link) == landing
                     || self.distance(*link) >= (1.0 - ON_WALL) * clearance
                         && self.touch(*link).closing >= 0.0
             }
         };
-        let all = 0..self.modes.len();
+        let all = 0..self.system.links.len();
         let links: Vec<usize> = all.clone().filter(touches).collect();
         for link in &links {
-            keep::keep_place(&self.system, *link, &mut self.place);
+            keep::keep_place(&self.system, *link, &mut self.now.place);
         }
         let backed: Vec<usize> = all.filter(|link| self.is_backed(*link, &links)).collect();
         for link in &backed {
-            keep::arrest(&self.system, *link, &self.place, &mut self.speed);
+            keep::arrest(&self.system, *link, &mut self.now);
         }
         let near = backed.iter().filter(|link| !links.contains(link));
         let all = links.iter().chain(near);
         let mut touching: Vec<Touching> = all.map(|link| self.touch(*link)).collect();
-        let passes = impact::strike(&self.system, &mut touching, &mut self.speed);
+        let passes = impact::strike(&self.system, &mut touching, &mut self.now.speed);
         self.cost += passes as usize * touching.len();
         for touch in &touching[..links.len()] {
             let (link, cutoff) = (touch.link, self.cutoff(touch.link));
-            let flew = self.modes[link] == Mode::Flight;
-            self.modes[link] = match touch.outward(&self.system, &self.speed) {
+            let flew = self.mode(link) == Mode::Flight;
+            let mode = match touch.outward(&self.system, &self.now.speed) {
                 outward if outward < -cutoff => Mode::Flight,
                 _ => self.closed(link),
             };
+            self.set(link, mode);
             if flew && touch.closing > cutoff && touch.impulse > 0.0 {
                 on_event(link, ModelEvent::Impact(self.impact(touch)));
             }
         }
         self.release_brakes();
-        self.surroundings.cut_off(&self.place, &self.speed);
+        self.surroundings.cut_off(&self.now);
         self.count();
     }
 
@@ -83,7 +83,7 @@ impl Motion {
         let wall = self.touch(link);
         let mut arriving = touching
             .iter()
-            .filter(|other| self.modes[**other] == Mode::Flight);
+            .filter(|other| self.mode(**other) == Mode::Flight);
         arriving.any(|other| {
             let other = self.touch(*other);
             // What the other's normal has of the wall's, for the body that is between them.
@@ -93,44 +93,41 @@ impl Motion {
         })
     }
 
-    fn touch(&self, link: usize) -> Touching {
-        Touching::new(&self.system, link, &self.place, &self.speed)
+    pub(super) fn touch(&self, link: usize) -> Touching {
+        Touching::new(&self.system, link, &self.now)
+    }
+
+    fn mode(&self, link: usize) -> Mode {
+        self.system.links[link].mode
     }
 
     /// A brake has no impulse, nor has a seat or a wall that gives way: what an impact has set moving slips in it.
     fn release_brakes(&mut self) {
-        for seat in SeatLink::all(&self.system) {
-            self.modes[seat.link] = Mode::Slide(0.0);
-        }
-        for link in 0..self.modes.len() {
-            let soft = matches!(self.system.links[link].hold, Hold::Soft(_));
-            if soft && self.modes[link] != Mode::Flight {
-                self.modes[link] = self.closed(link);
-            }
-        }
-        for (mode, link) in self.modes.iter_mut().zip(&self.system.links) {
-            let turning = link.turning(&self.speed);
-            if let (Hold::Brake(_), Mode::Stick) = (link.hold, *mode)
-                && turning != 0.0
-            {
-                *mode = Mode::Slide(turning.signum());
+        for number in 0..self.system.links.len() {
+            let link = &self.system.links[number];
+            let turning = link.turning(&self.now.speed);
+            match (link.hold, link.mode) {
+                (Hold::Seat { .. }, _) => self.set(number, Mode::Slide(0.0)),
+                (Hold::Soft(_), mode) if mode != Mode::Flight => {
+                    self.set(number, self.closed(number));
+                }
+                (Hold::Brake(_), Mode::Stick) if turning != 0.0 => {
+                    self.set(number, Mode::Slide(turning.signum()));
+                }
+                _ => {}
             }
         }
     }
 
-    /// What is told of a wall that gives way, as it is entered: it has no impulse yet.
-    pub(super) fn entry(&self, link: usize) -> Impact {
-        self.impact(&self.touch(link))
-    }
-
-    fn impact(&self, touch: &Touching) -> Impact {
+    /// What is told of it; a wall that gives way has no impulse yet as it is entered.
+    pub(super) fn impact(&self, touch: &Touching) -> Impact {
         let told = &self.system.links[touch.link].told;
         Impact {
             state: RotorState {
                 time: self.since.value,
-                position: shared(told, &self.place),
-                velocity: shared(told, &self.speed),
-                spin: self.speed[self.system.first_spin()],
+                position: shared(told, &self.now.place),
+                velocity: shared(told, &self.now.speed),
+                spin: self.now.speed[self.system.first_spin()],
                 turns_in_contact: 0.0,
             },
             normal_speed: touch.closing,
@@ -147,7 +144,7 @@ impl Motion {
     }
 
     pub(super) fn cutoff(&self, link: usize) -> f64 {
-        let [x, y] = self.system.links[link].lateral(&self.speed);
+        let [x, y] = self.system.links[link].lateral(&self.now.speed);
         let haste = (self.busy.0 / MANY_IMPACTS).floor().exp2();
         haste * (CUTOFF * self.units.1 + FAST_CUTOFF * f64::hypot(x, y))
     }

@@ -1,6 +1,5 @@
 //! Which links are closed, and how: the modes that last.
 
-use super::super::impact::Touching;
 use super::super::keep;
 use super::super::seat::{SLOWEST, SeatLink};
 use super::super::step::{Bounds, Ending, Step};
@@ -24,18 +23,23 @@ impl Motion {
         match ending {
             Ending::Step => {}
             Ending::Touch(link) => self.close(link),
-            Ending::Left(link) => self.leave(link),
-            Ending::PressedAgain(link) => self.modes[link] = self.closed(link),
-            Ending::LiftOff(link) => self.modes[link] = Mode::Flight,
+            Ending::Left(link) => {
+                if let Hold::Soft(soft) = &mut self.system.links[link].hold {
+                    soft.within = None;
+                }
+                self.set(link, Mode::Flight);
+            }
+            Ending::PressedAgain(link) => self.set(link, self.closed(link)),
+            Ending::LiftOff(link) => self.set(link, Mode::Flight),
             Ending::SlipEnds(link) => match self.seat(link) {
-                Some(seat) if !seat.stops(&self.system, &self.speed, self.slowest()) => {}
-                _ => self.modes[link] = Mode::Stick,
+                Some(seat) if !seat.stops(&self.system, &self.now.speed, self.slowest()) => {}
+                _ => self.set(link, Mode::Stick),
             },
             Ending::GripLost(link, sign) => {
                 if self.seat(link).is_some() {
                     self.set_off(link);
                 }
-                self.modes[link] = Mode::Slide(sign);
+                self.set(link, Mode::Slide(sign));
             }
             Ending::Cut { magnet, axis, sign } => {
                 self.surroundings.magnets[magnet].cut[axis] = sign
@@ -43,19 +47,17 @@ impl Motion {
         }
     }
 
+    /// A link goes on like this.
+    pub(super) fn set(&mut self, link: usize, mode: Mode) {
+        self.system.links[link].mode = mode;
+    }
+
     fn close(&mut self, link: usize) {
-        let closing = Touching::new(&self.system, link, &self.place, &self.speed).closing;
+        let closing = self.touch(link).closing;
         if let Hold::Soft(soft) = &mut self.system.links[link].hold {
             soft.enter(closing);
         }
-        self.modes[link] = self.closed(link);
-    }
-
-    fn leave(&mut self, link: usize) {
-        if let Hold::Soft(soft) = &mut self.system.links[link].hold {
-            soft.leave();
-        }
-        self.modes[link] = Mode::Flight;
+        self.set(link, self.closed(link));
     }
 
     fn seat(&self, link: usize) -> Option<SeatLink> {
@@ -71,31 +73,20 @@ impl Motion {
     fn set_off(&mut self, link: usize) {
         let held = self.step.held(link, self.step.end);
         let velocity = SeatLink::set_off(held, self.slowest());
-        let set_off = (link, velocity);
-        keep::set_off(
-            &self.system,
-            &self.modes,
-            set_off,
-            &self.place,
-            &mut self.speed,
-        );
-    }
-
-    fn keep_speed(&mut self) {
-        keep::keep_speed(&self.system, &self.modes, &self.place, &mut self.speed);
+        keep::set_off(&self.system, link, velocity, &mut self.now);
     }
 
     /// Rings that slide no faster than the cut-off are at rest; whether there are any.
     fn seats_stop(&mut self) -> bool {
-        let mut any = false;
-        for seat in SeatLink::all(&self.system) {
-            let slow = seat.speed(&self.system, &self.speed) <= self.slowest();
-            if slow && self.modes[seat.link] != Mode::Stick {
-                self.modes[seat.link] = Mode::Stick;
-                any = true;
-            }
+        let slow = |seat: &SeatLink| {
+            let speed = seat.speed(&self.system, &self.now.speed);
+            speed <= self.slowest()
+        };
+        let slow: Vec<_> = SeatLink::sliding(&self.system).filter(slow).collect();
+        for seat in &slow {
+            self.set(seat.link, Mode::Stick);
         }
-        any
+        !slow.is_empty()
     }
 
     /// How a link that touches goes on: with slip or without.
@@ -103,9 +94,8 @@ impl Motion {
         if self.system.links[link].friction() == 0.0 {
             return Mode::Slide(0.0);
         }
-        let slip = Touching::new(&self.system, link, &self.place, &self.speed)
-            .slip(&self.system, &self.speed);
-        let rounding = NO_SLIP * self.system.links[link].slip_size(&self.speed);
+        let slip = self.touch(link).slip(&self.system, &self.now.speed);
+        let rounding = NO_SLIP * self.system.links[link].slip_size(&self.now.speed);
         if slip.abs() <= rounding {
             Mode::Stick
         } else {
@@ -114,7 +104,7 @@ impl Motion {
     }
 
     pub(super) fn distance(&self, link: usize) -> f64 {
-        let [x, y] = self.system.links[link].lateral(&self.place);
+        let [x, y] = self.system.links[link].lateral(&self.now.place);
         f64::hypot(x, y)
     }
 
@@ -126,11 +116,10 @@ impl Motion {
                 self.forced = FORCED_STEP;
                 return;
             }
-            if let Ending::Touch(link) = self.step.ending {
-                let touch = Touching::new(&self.system, link, &self.place, &self.speed);
-                if touch.closing > self.cutoff(link) {
-                    return;
-                }
+            if let Ending::Touch(link) = self.step.ending
+                && self.touch(link).closing > self.cutoff(link)
+            {
+                return;
             }
             self.change(self.step.ending);
         }
@@ -144,16 +133,15 @@ impl Motion {
 
     /// Tries all modes of the links that touch until a set of them lasts.
     fn search(&mut self) -> bool {
-        let links = 0..self.modes.len();
-        let choices: Vec<Vec<Mode>> = links.map(|link| self.choices(link)).collect();
+        let choices = self.each(|link, _| self.choices(link));
         let sets = choices.iter().map(Vec::len).product();
         for set in 0..sets {
             if self.given_up().is_some() {
                 return false;
             }
             let mut rest: usize = set;
-            for (mode, choices) in self.modes.iter_mut().zip(&choices) {
-                *mode = choices[rest % choices.len()];
+            for (link, choices) in self.system.links.iter_mut().zip(&choices) {
+                link.mode = choices[rest % choices.len()];
                 rest /= choices.len();
             }
             self.begin();
@@ -168,14 +156,14 @@ impl Motion {
     fn choices(&self, link: usize) -> Vec<Mode> {
         let any = [Mode::Stick, Mode::Slide(1.0), Mode::Slide(-1.0)];
         let Some(clearance) = self.system.links[link].rigid() else {
-            return match (self.system.links[link].hold, self.modes[link]) {
+            let link = &self.system.links[link];
+            return match (link.hold, link.mode) {
                 (Hold::Brake(_), Mode::Stick) => any.to_vec(),
                 (_, mode) => vec![mode],
             };
         };
-        let touch = Touching::new(&self.system, link, &self.place, &self.speed);
         let apart = self.distance(link) < (1.0 - ON_WALL) * clearance;
-        if apart || touch.closing.abs() > self.cutoff(link) {
+        if apart || self.touch(link).closing.abs() > self.cutoff(link) {
             return vec![Mode::Flight];
         }
         let mut choices = match self.closed(link) {
@@ -187,31 +175,23 @@ impl Motion {
     }
 
     fn begin(&mut self) {
-        for link in 0..self.modes.len() {
-            let rigid = self.system.links[link].rigid().is_some();
-            if rigid && self.modes[link] != Mode::Flight {
-                keep::keep_place(&self.system, link, &mut self.place);
+        for (number, link) in self.system.links.iter().enumerate() {
+            if link.rigid().is_some() && link.mode != Mode::Flight {
+                keep::keep_place(&self.system, number, &mut self.now.place);
             }
         }
-        self.keep_speed();
+        keep::keep_speed(&self.system, &mut self.now);
         if self.seats_stop() {
-            self.keep_speed();
+            keep::keep_speed(&self.system, &mut self.now);
         }
         let since = self.since.value;
-        let next = self.surroundings.reach(since, &self.place, &self.speed);
-        let until = next - since;
-        self.step = Step::new(
-            &self.system,
-            &self.surroundings,
-            &self.modes,
-            (&self.place, &self.speed),
-            Bounds {
-                accuracy: self.accuracy,
-                longest: until.min(LONGEST * self.units.0),
-                speed: self.units.1,
-                slowest: self.slowest(),
-            },
-        );
+        let until = self.surroundings.reach(since, &self.now) - since;
+        let bounds = Bounds {
+            accuracy: self.accuracy,
+            longest: until.min(LONGEST * self.units.0),
+            speed: self.units.1,
+        };
+        self.step = Step::new(&self.system, &self.surroundings, &self.now, bounds);
         self.cost += self.step.cost;
     }
 }
