@@ -8,7 +8,7 @@ use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{Keys, MILLI, ON_THE_WALL};
-use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
+use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable, axes};
 use super::{Retainer, Rotor, Scene, Start, limits, list};
 use touchdown_base::plain::Number;
 
@@ -86,10 +86,13 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
         stiffness: a.stiffness + b.stiffness,
         damping: a.damping + b.damping,
         vertical: (a.vertical.is_some() || b.vertical.is_some())
-            .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
+            .then(|| [0, 1].map(|k| axes(&a)[1][k] + axes(&b)[1][k])),
         friction: a.friction + b.friction,
         stop: match (a.stop, b.stop) {
-            (Some(a), Some(b)) => Some(a.with(b)),
+            (Some(a), Some(b)) => Some(Stop {
+                travel: a.travel.min(b.travel),
+                stiffness: a.stiffness.zip(b.stiffness).map(|(a, b)| a + b),
+            }),
             (a, b) => a.or(b),
         },
     })
@@ -132,7 +135,7 @@ impl TwoPlane {
         let mounts = self.rings.iter().filter_map(|it| it.support);
         let mounts = mounts.flat_map(|it| {
             let stop = it.stop.and_then(|it| it.stiffness).unwrap_or(0.0);
-            it.axes().map(|[spring, damper]| {
+            axes(&it).map(|[spring, damper]| {
                 f64::max(((spring + stop) / it.mass).sqrt(), damper / it.mass)
             })
         });
