@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use touchdown_models::Materials as Elastic;
+use touchdown_models::{CompliantConfig, Materials as Elastic};
 
 /// How rotor and retainer touch.
 #[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
@@ -22,17 +22,11 @@ pub enum Contact {
     },
 }
 
-/// A wall that gives way: its force over depth, in place of restitution. The balls give way with it.
+/// A wall that gives way, in place of restitution. The balls give way with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompliantWall {
-    /// The shape.
-    pub contact: Contact,
-    /// K: force is K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line; N/m^1.5 or N/m.
-    pub stiffness: f64,
-    /// N/m.
-    pub balls: Option<f64>,
-    /// Speed of entry below which it does not scale the damping, m/s.
-    pub slowest: f64,
+    /// Its force over depth: K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line.
+    pub law: CompliantConfig<f64>,
     /// Duration of the fastest impact, s.
     pub contact_time: f64,
 }

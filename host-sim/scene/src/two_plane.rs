@@ -1,6 +1,7 @@
 //! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
+use touchdown_models::RaceConfig;
 
 use super::base::Base;
 use super::diagnostic::Diagnostic;
@@ -100,11 +101,14 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
 
 fn races(all: impl Iterator<Item = BallBearing>) -> Option<BallBearing> {
     all.reduce(|a, b| BallBearing {
-        inertia: a.inertia + b.inertia,
-        dry_drag: a.dry_drag + b.dry_drag,
-        viscous_drag: a.viscous_drag + b.viscous_drag,
-        heat_capacity: a.heat_capacity + b.heat_capacity,
-        heat_loss: a.heat_loss + b.heat_loss,
+        race: RaceConfig {
+            inertia: a.race.inertia + b.race.inertia,
+            dry_drag: a.race.dry_drag + b.race.dry_drag,
+            viscous_drag: a.race.viscous_drag + b.race.viscous_drag,
+            heat_capacity: a.race.heat_capacity + b.race.heat_capacity,
+            heat_loss: a.race.heat_loss + b.race.heat_loss,
+            ..a.race
+        },
         ..a
     })
 }

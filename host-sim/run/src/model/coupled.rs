@@ -1,8 +1,8 @@
 //! Rungs `support`, `two-plane` and `coupled`: from the scene's parts to a model.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement,
-    UnbalanceConfig, Whole,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement, UnbalanceConfig,
+    Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
