@@ -55,49 +55,32 @@ fn fixed(table: &ModelTable, model: &Model) -> Fixed {
 }
 
 fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Diagnostic> {
-    let Some(table) = table else {
+    use Output::{ContactTime, ImpactSpeed, ImpactTime, PeakForce, Phases, WhirlLoad};
+    let Some(it) = table else {
         let phases = Request {
-            output: Output::Phases,
+            output: Phases,
             tolerance: DEFAULT_PHASES,
         };
         return Ok(vec![REGIME, phases]);
     };
     let mut asked = Vec::new();
-    asked.extend((table.regime == Some(true)).then_some(REGIME));
+    asked.extend((it.regime == Some(true)).then_some(REGIME));
     for (key, given, output) in [
-        ("impact_time_us", table.impact_time_us, Output::ImpactTime),
-        (
-            "impact_speed_percent",
-            table.impact_speed_percent,
-            Output::ImpactSpeed,
-        ),
-        ("phases_us", table.phases_us, Output::Phases),
-        (
-            "whirl_load_percent",
-            table.whirl_load_percent,
-            Output::WhirlLoad,
-        ),
-        (
-            "peak_force_percent",
-            table.peak_force_percent,
-            Output::PeakForce,
-        ),
-        (
-            "contact_time_percent",
-            table.contact_time_percent,
-            Output::ContactTime,
-        ),
+        ("impact_time_us", it.impact_time_us, ImpactTime),
+        ("impact_speed_percent", it.impact_speed_percent, ImpactSpeed),
+        ("phases_us", it.phases_us, Phases),
+        ("whirl_load_percent", it.whirl_load_percent, WhirlLoad),
+        ("peak_force_percent", it.peak_force_percent, PeakForce),
+        ("contact_time_percent", it.contact_time_percent, ContactTime),
     ] {
         let Some(given) = given else { continue };
         if given <= 0.0 {
-            let rule = format!(
-                "{key} is a tolerance and must be above 0, is {}",
-                Number(given)
-            );
+            let given = Number(given);
+            let rule = format!("{key} is a tolerance and must be above 0, is {given}");
             return Err(OUTPUTS.broken(key, rule));
         }
         let unit = match output {
-            Output::ImpactTime | Output::Phases => MICRO,
+            ImpactTime | Phases => MICRO,
             _ => PERCENT,
         };
         asked.push(Request {

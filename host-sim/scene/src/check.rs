@@ -244,7 +244,7 @@ fn two_plane(
 
 fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
     const KEYS: Keys = Keys("model");
-    let rung = KEYS.named_or("rung", &table.rung, needed, &Fidelity::ALL)?;
+    let rung = KEYS.named_or("rung", &table.rung, needed, Fidelity::ALL)?;
     let parts = match rung {
         Fidelity::Support => "[support] or [ball_bearing]",
         Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",

@@ -1,11 +1,11 @@
 //! What is modelled, and how it is computed.
 
 use serde::Serialize;
-use strum::VariantArray;
+use strum::{Display, IntoStaticStr, VariantArray};
 
 /// Rung of the ladder of models.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr, VariantArray,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
@@ -25,9 +25,7 @@ pub enum Fidelity {
 }
 
 /// How a rung goes through time.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum Scheme {
@@ -43,9 +41,7 @@ pub enum Scheme {
 }
 
 /// Number format of the model.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum Precision {
@@ -56,9 +52,7 @@ pub enum Precision {
 }
 
 /// Where square roots, sines and the like come from.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum Math {
@@ -91,7 +85,7 @@ pub struct Model {
 }
 
 /// A part of a machine that a model can do without.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr, VariantArray)]
 pub enum Removable {
     /// It bounds whirl.
     #[strum(serialize = "retainer's mass, spring, damper")]
@@ -156,14 +150,7 @@ impl Model {
 
 impl Fidelity {
     /// All, by rising cost.
-    pub const ALL: [Self; 6] = [
-        Self::Rigid,
-        Self::Moreau,
-        Self::Hertz,
-        Self::Support,
-        Self::TwoPlane,
-        Self::Coupled,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its schemes; the first is the default.
     pub fn schemes(self) -> &'static [Scheme] {

@@ -1,4 +1,4 @@
-//! The rung, what it holds in memory and what it costs on the target.
+//! The rung, what it holds in memory and what it costs on the target; its contact, and the sensors.
 
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Precision, Stepper};
@@ -7,8 +7,8 @@ use super::Row;
 use crate::instructions::Instructions;
 use crate::model::{Subject, Use, with_model};
 use touchdown_scene::parts::degrees_of_freedom;
-use touchdown_scene::scales::validity;
-use touchdown_scene::{Fidelity, Scene, Start};
+use touchdown_scene::scales::{compliance, validity};
+use touchdown_scene::{Contact, Fidelity, Scene, Start};
 
 pub(super) fn model(scene: &Scene) -> Vec<Row> {
     let step = scene.model.step * 1e6;
@@ -104,4 +104,94 @@ fn instructions(scene: &Scene) -> Vec<Row> {
         ));
     }
     rows
+}
+
+/// How stiff a contact is that takes time.
+pub(super) fn contact(scene: &Scene) -> Vec<Row> {
+    let (law, exponent) = match scene.materials.contact {
+        Contact::Point => ("K, force is K d^n", "1.5"),
+        Contact::LinePower { .. } => ("K, force is K d^n", "1"),
+        Contact::Line { .. } => ("K, force F is K d/(ln(4 K c/F) - 1)", "1"),
+    };
+    let Ok(compliance) = compliance(scene) else {
+        return Vec::new();
+    };
+    let micros = |seconds: f64| format!("{:.4} us", seconds * 1e6);
+    vec![
+        ("shape", scene.materials.contact.to_string()),
+        (law, format!("{:.6e} N/m^{exponent}", compliance.stiffness)),
+        (
+            "fastest impact: force, depth",
+            format!(
+                "{:.1} N, {:.4} um",
+                compliance.peak_force,
+                compliance.deepest * 1e6
+            ),
+        ),
+        ("omega_c, there", format!("{:.1} rad/s", compliance.rate)),
+        ("T_c, its duration", micros(compliance.contact_time)),
+        (
+            "steps: accurate, longest",
+            format!(
+                "{}, {}",
+                micros(compliance.accurate_step()),
+                micros(compliance.longest_step())
+            ),
+        ),
+    ]
+}
+
+/// Their resolution and noise.
+pub(super) fn sensors(scene: &Scene) -> Vec<Row> {
+    let config = &scene.sensors;
+    let resolution = config.resolution();
+    // A uniform error of one count has this standard deviation.
+    let noise = config.noise.hypot(resolution / 12_f64.sqrt());
+    let channels = f64::from(config.planes);
+    let bandwidth = config.bandwidth.map_or_else(
+        || "not modelled".to_owned(),
+        |corner| format!("{corner} Hz"),
+    );
+    let mut rows = vec![
+        ("planes", config.planes.to_string()),
+        ("sample rate", format!("{} Hz", scene.run.sample_rate)),
+        ("range", format!("+-{} um", short(config.range * 1e6))),
+        (
+            "one count",
+            format!("{:.4} um ({} bits)", resolution * 1e6, config.bits),
+        ),
+        (
+            "noise of a channel",
+            format!("{:.4} um rms with rounding", noise * 1e6),
+        ),
+        (
+            "noise of the mean position",
+            format!("{:.4} um rms", noise * 1e6 / channels.sqrt()),
+        ),
+        ("bandwidth", bandwidth),
+        ("speed signal", yes(config.speed)),
+        ("levitation signal", yes(config.levitation_signal)),
+    ];
+    let distorts = config.runout > 0.0
+        || config.nonlinearity != 0.0
+        || config
+            .offset
+            .iter()
+            .chain(&config.gain_error)
+            .any(|value| *value != 0.0);
+    let distortion = if distorts {
+        "as the scene asks"
+    } else {
+        "none"
+    };
+    rows.push(("runout, gain, offset, curve", distortion.to_owned()));
+    rows
+}
+
+fn short(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn yes(wired: bool) -> String {
+    if wired { "yes" } else { "no" }.to_owned()
 }

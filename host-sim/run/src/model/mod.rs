@@ -6,12 +6,10 @@ mod machine;
 mod parts;
 mod plane;
 mod seen;
-mod simulate;
 
 use boxed::Boxed;
-pub use plane::follow;
+pub use plane::{follow, run, simulate, simulate_to_verdict};
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
-pub use simulate::{run, simulate, simulate_to_verdict};
 
 use touchdown_models::{Euler, Hertz, Line, LinePower, Moreau, Point, Shape, Verlet};
 use touchdown_rotor::error::ConfigError;

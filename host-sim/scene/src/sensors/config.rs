@@ -3,6 +3,7 @@
 use touchdown_core::sample::CHANNELS;
 use touchdown_core::sensing::{Calibration, PLANES, SensingConfig};
 use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::scales::{not_negative, positive};
 
 use super::Tachometers;
 
@@ -79,7 +80,7 @@ impl SensorsConfig {
 
     /// Checks every field.
     pub fn check(&self) -> Result<(), ConfigError> {
-        use ConfigError::{Negative, NotFinite, NotPositive, OutOfRange};
+        use ConfigError::{NotFinite, OutOfRange};
         let corner = self.bandwidth.unwrap_or(1.0);
         let lists: [(&[f64], &'static str); 9] = [
             (&self.offset, "offset"),
@@ -97,39 +98,28 @@ impl SensorsConfig {
                 return Err(NotFinite(name));
             }
         }
-        if !(1..=2).contains(&self.planes) {
-            return Err(OutOfRange("planes", "1 or 2"));
-        }
-        if !(4..=16).contains(&self.bits) {
-            return Err(OutOfRange("bits", "4 to 16"));
-        }
-        if self.range <= 0.0 {
-            return Err(NotPositive("range"));
-        }
-        if self.noise < 0.0 {
-            return Err(Negative("noise"));
-        }
-        if self.noise > self.range {
-            return Err(OutOfRange("noise", "no more than the range"));
-        }
-        if corner <= 0.0 {
-            return Err(NotPositive("bandwidth"));
-        }
-        if self.gain_error.iter().any(|error| *error <= -1.0) {
-            return Err(OutOfRange("gain_error", "above -100 %"));
-        }
-        if self.skew.iter().any(|skew| skew.abs() > 0.5) {
-            return Err(OutOfRange("skew", "-0.5 to 0.5 rad"));
-        }
-        if self.nonlinearity.abs() > 0.3 {
-            return Err(OutOfRange("nonlinearity", "-30 to 30 %"));
-        }
-        if self.runout < 0.0 {
-            return Err(Negative("runout"));
-        }
-        if !(1..=1000).contains(&self.runout_harmonic) {
-            return Err(OutOfRange("runout_harmonic", "1 to 1000"));
-        }
+        let within = |holds: bool, name, range| match holds {
+            true => Ok(()),
+            false => Err(OutOfRange(name, range)),
+        };
+        within((1..=2).contains(&self.planes), "planes", "1 or 2")?;
+        within((4..=16).contains(&self.bits), "bits", "4 to 16")?;
+        positive("range", self.range)?;
+        not_negative("noise", self.noise)?;
+        within(self.noise <= self.range, "noise", "no more than the range")?;
+        positive("bandwidth", corner)?;
+        let gains = self.gain_error.iter().all(|error| *error > -1.0);
+        within(gains, "gain_error", "above -100 %")?;
+        let skews = self.skew.iter().all(|skew| skew.abs() <= 0.5);
+        within(skews, "skew", "-0.5 to 0.5 rad")?;
+        within(
+            self.nonlinearity.abs() <= 0.3,
+            "nonlinearity",
+            "-30 to 30 %",
+        )?;
+        not_negative("runout", self.runout)?;
+        let waves = (1..=1000).contains(&self.runout_harmonic);
+        within(waves, "runout_harmonic", "1 to 1000")?;
         if let Some(tachometers) = &self.tachometers {
             tachometers.config().validate()?;
         }
