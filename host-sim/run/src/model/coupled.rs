@@ -5,6 +5,7 @@ use touchdown_models::{
     Whole,
 };
 use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::Poly32;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start};
 
@@ -13,7 +14,7 @@ pub use super::machine::StepView;
 use super::machine::{MachineDrop, OnStep};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::{FollowedDrop, ModelRun};
-use super::{InNumbers, Numbers, Subject, in_numbers_of_rings, scaled};
+use super::{Subject, scaled};
 use touchdown_scene::scales::start_speed;
 use touchdown_scene::{Fidelity, MODES, Removable, Scene};
 
@@ -184,18 +185,12 @@ pub(super) fn follow<'a>(
     scene: &'a Scene,
     on_step: Option<OnStep<'a>>,
 ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
-    in_numbers_of_rings(scene, MachineRelease(scene, on_step))
+    in_numbers!(scene, [Libm F64: f64, Libm F32: f32, Polynomial F32: Poly32], R => {
+        in_parts::<R, _>(scene, MachineRelease(scene, on_step))
+    })
 }
 
 struct MachineRelease<'a>(&'a Scene, Option<OnStep<'a>>);
-
-impl<'a> InNumbers for MachineRelease<'a> {
-    type Output = Box<dyn FollowedDrop + 'a>;
-
-    fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError> {
-        in_parts::<R, _>(self.0, self)
-    }
-}
 
 impl<'a> UseWhole for MachineRelease<'a> {
     type Output<R: Precision> = Box<dyn FollowedDrop + 'a>;

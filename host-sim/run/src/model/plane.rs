@@ -20,16 +20,7 @@ pub fn follow(scene: &Scene) -> Result<Box<dyn FollowedDrop + '_>, ConfigError> 
 
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
-    match scene.model.rung {
-        Fidelity::Rigid => with_model(
-            scene,
-            RunOut {
-                scene,
-                to_verdict: false,
-            },
-        ),
-        _ => Ok(follow(scene)?.finish()),
-    }
+    run_out(scene, false)
 }
 
 /// The rotor's part of [`run`].
@@ -40,11 +31,14 @@ pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
 /// Likewise, but it may end where the regime can no longer change. Only the rigid rung does: a whirl that
 /// has gone round once and that nothing can end.
 pub fn simulate_to_verdict(scene: &Scene) -> Result<History, ConfigError> {
-    let to_verdict = scene.model.rung == Fidelity::Rigid;
-    if !to_verdict {
-        return simulate(scene);
+    run_out(scene, true).map(|run| run.histories.whole)
+}
+
+fn run_out(scene: &Scene, to_verdict: bool) -> Result<ModelRun, ConfigError> {
+    match scene.model.rung {
+        Fidelity::Rigid => with_model(scene, RunOut { scene, to_verdict }),
+        _ => Ok(follow(scene)?.finish()),
     }
-    with_model(scene, RunOut { scene, to_verdict }).map(|run| run.histories.whole)
 }
 
 /// Goes past steps in which nothing changes, where the model can.
@@ -61,14 +55,8 @@ impl Use for RunOut<'_> {
         subject: &Subject<R, M>,
     ) -> Result<ModelRun, ConfigError> {
         let mut drop = PlaneDrop::new(self.scene, subject)?;
-        let PlaneDrop {
-            model,
-            state,
-            seen,
-            told,
-            ..
-        } = &mut drop;
-        let take = |it| told.take(seen.happening(&it));
+        let (model, state) = (&subject.model, &mut drop.state);
+        let take = |it| drop.told.take(drop.seen.happening(&it));
         let (steps, fraction) = steps_of_run(self.scene.run.duration / self.scene.model.step);
         if self.to_verdict {
             model.run_to_verdict(state, steps, R::lit(fraction), take);
