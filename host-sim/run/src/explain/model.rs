@@ -76,19 +76,14 @@ fn instructions(scene: &Scene) -> Vec<Row> {
     let Some(each) = Instructions::of(&scene.model) else {
         return vec![("instructions on the target", "not counted".to_owned())];
     };
-    let Instructions {
-        flight,
-        contact,
-        impact,
-        stretch,
-    } = each;
-    let flight = format!("{flight:.0} on the target");
+    let flight = format!("{:.0} on the target", each.flight);
+    let contact = format!("{:.0}", each.contact);
     let mut rows = vec![
         ("instructions a step in flight", flight),
-        ("instructions a step in contact", format!("{contact:.0}")),
+        ("instructions a step in contact", contact),
     ];
-    if impact > 0.0 {
-        let more = format!("{impact:.0}, {stretch:.0}");
+    if each.impact > 0.0 {
+        let more = format!("{:.0}, {:.0}", each.impact, each.stretch);
         rows.push(("more for an impact, a contact", more));
     }
     rows
@@ -130,14 +125,11 @@ pub(super) fn sensors(scene: &Scene) -> Vec<Row> {
     let bandwidth = config.bandwidth.map(|corner| format!("{corner} Hz"));
     let count = format!("{:.4} um ({} bits)", resolution * 1e6, config.bits);
     let mean = noise * 1e6 / channels.sqrt();
-    let errors = config.offset.iter().chain(&config.gain_error);
-    let distorts = config.runout > 0.0
-        || config.nonlinearity != 0.0
-        || errors.into_iter().any(|value| *value != 0.0);
-    let distortion = if distorts {
-        "as the scene asks"
-    } else {
-        "none"
+    let mut errors = config.offset.iter().chain(&config.gain_error);
+    let bent = config.runout > 0.0 || config.nonlinearity != 0.0;
+    let distortion = match bent || errors.any(|value| *value != 0.0) {
+        true => "as the scene asks",
+        false => "none",
     };
     let not_modelled = || "not modelled".to_owned();
     vec![
