@@ -4,8 +4,8 @@ use serde::Deserialize;
 use touchdown_models::BaseConfig;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{Keys, MILLI};
-use super::{limits, list};
+use super::limits;
+use super::rule::{Keys, MILLI, exactly};
 
 /// A base that goes to and fro.
 pub type Base = BaseConfig<f64>;
@@ -13,7 +13,7 @@ pub type Base = BaseConfig<f64>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BaseTable {
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     amplitude_mm: [f64; 2],
     frequency_hz: f64,
     #[serde(default)]

@@ -2,16 +2,15 @@
 
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
-use touchdown_core::sensing::Calibration;
 
 use super::auto::auto;
 use super::base::BaseTable;
 use super::calibration::CalibrationTable;
-use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
-use super::file::{ModelTable, RunTable, SceneFile, SensorsTable, StatorTable};
+use super::file::{ModelTable, RunTable, SceneFile, StatorTable};
 use super::machine::{retainer, rotor, start};
+use super::materials::materials;
 use super::rule::{Keys, MICRO, MILLI, translate};
 use super::scales;
 use super::support::{BallBearingTable, SupportTable};
@@ -19,7 +18,7 @@ use super::{
     BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Start,
     Support, TwoPlane, limits,
 };
-use crate::sensors::{SensorsConfig, Tachometers};
+use crate::sensors::SensorsConfig;
 use touchdown_base::plain::Number;
 
 pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
@@ -45,7 +44,12 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let auto = auto(&file, &model)?;
     let calibration = file.calibration.as_ref();
     let calibration = calibration.map(CalibrationTable::check).transpose()?;
-    let sensors = sensors(&file.sensors, calibration, tachometers)?;
+    let sensors = SensorsConfig {
+        calibration,
+        tachometers,
+        ..file.sensors
+    };
+    sensors.check().map_err(|error| translate(&error))?;
     let faults = faults(&file.fault, &sensors, &run)?;
     let mut scene = Scene {
         name: name.to_owned(),
@@ -87,6 +91,26 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
 fn stator_gap(table: Option<&StatorTable>) -> Result<Option<f64>, Diagnostic> {
     let gap = |it: &StatorTable| Keys("stator").between("gap_mm", it.gap_mm, limits::CLEARANCE_MM);
     Ok(table.map(gap).transpose()?.map(|gap| MILLI * gap))
+}
+
+/// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
+/// that is accurate.
+pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Diagnostic> {
+    let compliance = scales::compliance(scene).map_err(|error| translate(&error))?;
+    let step = scene.model.step;
+    if !given {
+        return Ok(step / (step / compliance.accurate_step()).ceil());
+    }
+    let longest = compliance.longest_step();
+    if step > longest {
+        let rule = format!(
+            "step_us must be no more than {:.4}, the limit of stability 2/omega_c of this contact, is {}",
+            Number(longest / MICRO),
+            Number(step / MICRO)
+        );
+        return Err(Diagnostic::new("model", "step_us", rule));
+    }
+    Ok(step)
 }
 
 /// Of fidelity `coupled`: a whole part of a sample that follows the fastest motion and short bounces, as far as
@@ -291,31 +315,4 @@ fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagn
         cutoff,
         left_out: LeftOut::default(),
     })
-}
-
-fn sensors(
-    table: &SensorsTable,
-    calibration: Option<Calibration>,
-    tachometers: Option<Tachometers>,
-) -> Result<SensorsConfig, Diagnostic> {
-    let config = SensorsConfig {
-        planes: table.planes,
-        bits: table.bits,
-        range: MICRO * table.range_um,
-        noise: MICRO * table.noise_um,
-        bandwidth: table.bandwidth_hz,
-        mounting_angle: table.mounting_deg.map(f64::to_radians),
-        skew: table.skew_deg.map(f64::to_radians),
-        offset: table.offset_um.map(|offset| MICRO * offset),
-        gain_error: table.gain_error_percent.map(|error| error / 100.0),
-        nonlinearity: table.nonlinearity_percent / 100.0,
-        runout: MICRO * table.runout_um,
-        runout_harmonic: table.runout_harmonic,
-        speed: table.speed,
-        levitation_signal: table.levitation_signal,
-        calibration,
-        tachometers,
-    };
-    config.check().map_err(|error| translate(&error))?;
-    Ok(config)
 }

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{Keys, MILLI};
-use super::{limits, list};
+use super::limits;
+use super::rule::{Keys, MILLI, exactly};
 
 /// Most magnets: two planes of them, as they are left and as they come back.
 const MAGNETS: usize = 4;
@@ -34,7 +34,7 @@ pub(super) struct MagnetTable {
     stiffness_n_m: f64,
     #[serde(default)]
     damping_n_s_m: f64,
-    #[serde(default, deserialize_with = "list::exactly")]
+    #[serde(default, deserialize_with = "exactly")]
     force_n: [f64; 2],
     limit_n: Option<f64>,
     from_s: Option<f64>,

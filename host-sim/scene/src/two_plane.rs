@@ -8,9 +8,9 @@ use super::diagnostic::Diagnostic;
 use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
-use super::rule::{Keys, MILLI, ON_THE_WALL};
+use super::rule::{Keys, MILLI, ON_THE_WALL, exactly, exactly_if_there};
 use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable, axes};
-use super::{Retainer, Rotor, Scene, Start, limits, list};
+use super::{Retainer, Rotor, Scene, Start, limits};
 use touchdown_base::plain::Number;
 
 /// Most rings.
@@ -206,12 +206,12 @@ pub(super) struct TwoPlaneTable {
     skew_mrad: f64,
     skew_deg: f64,
     elastic_mode_hz: Option<f64>,
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     tilt_mrad: [f64; 2],
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     tilt_rate_rad_s: [f64; 2],
     gravity_deg: f64,
-    #[serde(deserialize_with = "list::exactly_if_there")]
+    #[serde(deserialize_with = "exactly_if_there")]
     sensor_z_mm: Option<[f64; 2]>,
 }
 
