@@ -23,13 +23,11 @@ pub(super) struct BaseTable {
 impl BaseTable {
     pub fn check(&self) -> Result<Base, Diagnostic> {
         const KEYS: Keys = Keys("base");
-        for amplitude in self.amplitude_mm {
-            KEYS.between("amplitude_mm", amplitude, limits::BASE_MM)?;
-        }
+        let amplitude = KEYS.each("amplitude_mm", self.amplitude_mm, limits::BASE_MM)?;
         let frequency = KEYS.between("frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
         let phase = KEYS.between("phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
         Ok(Base {
-            amplitude: self.amplitude_mm.map(|it| MILLI * it),
+            amplitude: amplitude.map(|it| MILLI * it),
             rate: std::f64::consts::TAU * frequency,
             phase: phase.to_radians(),
         })

@@ -40,12 +40,10 @@ impl Validity {
     /// Of a pulse's band and a mode, Hz.
     pub(super) fn new(band_hz: f64, mode_hz: f64) -> Self {
         let ratio = band_hz / mode_hz;
-        let verdict = if ratio <= STIFF {
-            Verdict::Rigid
-        } else if ratio <= 1.0 {
-            Verdict::Rings
-        } else {
-            Verdict::Bends
+        let verdict = match ratio {
+            _ if ratio <= STIFF => Verdict::Rigid,
+            _ if ratio <= 1.0 => Verdict::Rings,
+            _ => Verdict::Bends,
         };
         Self {
             band_hz,

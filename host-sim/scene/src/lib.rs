@@ -143,17 +143,15 @@ impl Scene {
         if path.exists() && !(path.is_dir() && built_in.is_some()) {
             return InputError::read(path, LARGEST_TOML).map(Cow::Owned);
         }
-        match built_in {
-            Some(scene) => Ok(Cow::Borrowed(scene.text)),
-            None => {
+        built_in
+            .map(|scene| Cow::Borrowed(scene.text))
+            .ok_or_else(|| {
                 let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
-                let rule = format!(
-                    "no such file, and no built-in scene of this name; built in: {}",
-                    names.join(", ")
-                );
-                Err(InputError::of_file(name, rule))
-            }
-        }
+                let names = names.join(", ");
+                let rule =
+                    format!("no such file, and no built-in scene of this name; built in: {names}");
+                InputError::of_file(name, rule)
+            })
     }
 
     /// Reads the scene `text`; errors name it `name`.
@@ -192,24 +190,20 @@ impl Scene {
     /// The longest step that follows all that the model moves, s, what sets it, and what comes of longer ones; none where
     /// any step does.
     fn longest_step(&self) -> Option<(f64, &'static str, &'static str)> {
+        let in_contact = |limit| (limit, "T_c/25", "forces and contact times are inaccurate");
         match self.model.rung {
-            Fidelity::Hertz => {
-                let limit = compliance(self).ok()?.accurate_step();
-                Some((limit, "T_c/25", "forces and contact times are inaccurate"))
-            }
+            Fidelity::Hertz => Some(in_contact(compliance(self).ok()?.accurate_step())),
             Fidelity::Coupled => {
                 let fastest = self.two_plane.as_ref()?.fastest(self.rotor.spin);
                 let limit = 5.0 * limits::ANGLE_OF_STEP / fastest;
                 let accurate = scales::accurate_step(self);
-                if accurate < limit {
-                    let then = "forces and contact times are inaccurate";
-                    return Some((accurate, "T_c/25", then));
-                }
-                Some((
-                    limit,
-                    "half a radian of the fastest motion",
-                    "it is not followed",
-                ))
+                let of = "half a radian of the fastest motion";
+                let followed = (limit, of, "it is not followed");
+                Some(if accurate < limit {
+                    in_contact(accurate)
+                } else {
+                    followed
+                })
             }
             _ => None,
         }

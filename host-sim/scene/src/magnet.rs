@@ -49,14 +49,12 @@ impl MagnetTable {
         if stiffness != 0.0 {
             KEYS.between("stiffness_n_m", stiffness.abs(), limits::STIFFNESS_N_M)?;
         }
-        for force in self.force_n {
-            KEYS.between("force_n", force, limits::FORCE_N)?;
-        }
+        let force = KEYS.each("force_n", self.force_n, limits::FORCE_N)?;
         let limit = |it| KEYS.within("limit_n", it, limits::LIMIT_N);
         Ok(Magnet {
             place: MILLI * KEYS.between("z_mm", self.z_mm, limits::PLACE_MM)?,
             stiffness,
-            force: self.force_n,
+            force,
             limit: self.limit_n.map(limit).transpose()?,
             on: self.on()?,
             damping: KEYS.between("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,

@@ -58,6 +58,19 @@ impl Keys {
         self.holds(key, value, range.contains(&value), &rule)
     }
 
+    /// Each of a list.
+    pub(crate) fn each<const N: usize>(
+        self,
+        key: &'static str,
+        values: [f64; N],
+        range: RangeInclusive<f64>,
+    ) -> Result<[f64; N], Diagnostic> {
+        for value in values {
+            self.between(key, value, range.clone())?;
+        }
+        Ok(values)
+    }
+
     /// In a range that begins at 0 or above: what is on the wrong side of 0 is told so.
     pub(crate) fn within(
         self,

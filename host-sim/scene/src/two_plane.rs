@@ -122,12 +122,9 @@ impl TwoPlane {
 
     /// Whether it has what only rigid rings and a rigid rotor lack.
     pub fn is_coupled(&self) -> bool {
-        let seats = self.rings.iter();
-        let mut seats = seats.map(|ring| {
-            ring.support.is_some() || ring.ball_bearing.is_some() || ring.wall.is_some()
-        });
-        let mut magnets = self.magnets.iter();
-        seats.any(|gives_way| gives_way)
+        let seated = |it: &Ring| it.support.is_some() || it.ball_bearing.is_some();
+        let (mut rings, mut magnets) = (self.rings.iter(), self.magnets.iter());
+        rings.any(|it| seated(it) || it.wall.is_some())
             || magnets.any(|it| it.damping > 0.0 || it.on.is_some() || it.limit.is_some())
             || !self.modes.is_empty()
             || self.base.is_some()
@@ -245,21 +242,11 @@ impl TwoPlaneTable {
         let sensors = self.sensors([lowest, ends.fold(f64::NEG_INFINITY, f64::max)])?;
         let mode = |it| KEYS.between("elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
         let elastic_mode = self.elastic_mode_hz.map(mode).transpose()?;
-        for (key, pair) in [
-            ("tilt_mrad", self.tilt_mrad),
-            ("tilt_rate_rad_s", self.tilt_rate_rad_s),
-        ] {
-            for value in pair {
-                KEYS.between(key, value, limits::TILT)?;
-            }
-        }
-        for (key, angle) in [
-            ("unbalance_deg", self.unbalance_deg),
-            ("skew_deg", self.skew_deg),
-            ("gravity_deg", self.gravity_deg),
-        ] {
-            KEYS.between(key, angle, limits::ANGLE_DEG)?;
-        }
+        KEYS.each("tilt_mrad", self.tilt_mrad, limits::TILT)?;
+        KEYS.each("tilt_rate_rad_s", self.tilt_rate_rad_s, limits::TILT)?;
+        KEYS.between("unbalance_deg", self.unbalance_deg, limits::ANGLE_DEG)?;
+        KEYS.between("skew_deg", self.skew_deg, limits::ANGLE_DEG)?;
+        KEYS.between("gravity_deg", self.gravity_deg, limits::ANGLE_DEG)?;
         let unbalance = self.unbalance_g_mm;
         let unbalance = KEYS.between("unbalance_g_mm", unbalance, limits::UNBALANCE_G_MM)?;
         let skew = KEYS.between("skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
@@ -284,9 +271,7 @@ impl TwoPlaneTable {
         let Some(places) = self.sensor_z_mm else {
             return Ok(ends);
         };
-        for place in places {
-            KEYS.between("sensor_z_mm", place, limits::PLACE_MM)?;
-        }
+        let places = KEYS.each("sensor_z_mm", places, limits::PLACE_MM)?;
         Ok(places.map(|place| MILLI * place))
     }
 
@@ -300,13 +285,12 @@ impl TwoPlaneTable {
                 let square = rotor.radius * rotor.radius / 4.0 + length * length / 12.0;
                 (rotor.mass * square, "rotor_length_mm")
             }
-            (given, _) => {
-                let both = given.is_some();
-                let rule = if both {
-                    "transverse_inertia_kg_m2 or rotor_length_mm: give one"
-                } else {
-                    "transverse_inertia_kg_m2 or rotor_length_mm must be given"
-                };
+            (Some(_), Some(_)) => {
+                let rule = "transverse_inertia_kg_m2 or rotor_length_mm: give one";
+                return Err(KEYS.broken(key, rule));
+            }
+            (None, None) => {
+                let rule = "transverse_inertia_kg_m2 or rotor_length_mm must be given";
                 return Err(KEYS.broken(key, rule));
             }
         };
@@ -328,12 +312,10 @@ fn all_rings(
     retainer: &Retainer,
     tables: &[RingTable],
 ) -> Result<Vec<Ring>, Diagnostic> {
-    if tables.is_empty() || tables.len() > RINGS {
-        let rule = format!(
-            "[[ring]] must stand 1 to {RINGS} times, stands {} times",
-            tables.len()
-        );
-        let keys = if tables.is_empty() { KEYS } else { RING };
+    let count = tables.len();
+    if !(1..=RINGS).contains(&count) {
+        let rule = format!("[[ring]] must stand 1 to {RINGS} times, stands {count} times");
+        let keys = if count == 0 { KEYS } else { RING };
         return Err(keys.broken("z_mm", rule));
     }
     RING.rows("z_mm", tables, RINGS, |row, table| {

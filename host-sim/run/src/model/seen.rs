@@ -26,7 +26,7 @@ pub trait FollowedDrop {
 }
 
 /// What a model made of a drop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelRun {
     /// What happened.
     pub histories: Histories,
@@ -48,17 +48,10 @@ pub struct ModelRun {
 impl ModelRun {
     /// Where nothing moves but the rotor.
     pub fn of_rotor(whole: History) -> Self {
+        let rings = Vec::new();
         Self {
-            histories: Histories {
-                whole,
-                rings: Vec::new(),
-            },
-            given_up: None,
-            work: 0,
-            jammed: None,
-            ledger: None,
-            ring: None,
-            seats: Vec::new(),
+            histories: Histories { whole, rings },
+            ..Self::default()
         }
     }
 }
