@@ -188,7 +188,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let (model, scales) = (&self.of.model, &self.seen.scales);
         let [radius, excursion] = self.peaks[ring];
         let motion = model.ring(&self.state, ring);
-        let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
+        let [x_m, y_m] = self.seen.metres(motion.position);
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
         let peak_radius_m = radius * scales.length;
         let held = model.load(&self.state, ring).held_peak.to_f64() * unit / scales.length;
@@ -216,30 +216,28 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     /// Where the sensors see the rotor, m.
     fn sensed(&self, state: &CoupledState<R, N, Q>) -> [[f64; 2]; PLANES] {
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
         let Some(machine) = ends(self.scene) else {
-            return [metres(state.centre().0); PLANES];
+            return [self.seen.metres(state.centre().0); PLANES];
         };
         machine.sensors.map(|place| {
             let modes = shape(self.scene, place).map(R::lit);
             let shape = self.of.model.shape_at(R::lit(place), modes);
-            metres(state.axis_at(&shape).0)
+            self.seen.metres(state.axis_at(&shape).0)
         })
     }
 
     fn moving(&self, state: &CoupledState<R, N, Q>, since: f64) -> Moving {
-        let model = &self.of.model;
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
+        let (model, seen) = (&self.of.model, &self.seen);
         if self.scene.two_plane.is_some() {
             let mut ends = [[0.0; 2]; RINGS];
             for (ring, end) in ends.iter_mut().enumerate().take(N) {
-                *end = metres(model.displacement(state, ring));
+                *end = seen.metres(model.displacement(state, ring));
             }
             return Moving::Ends(ends);
         }
         let race_spin = self.race_spins(state)[0];
         Moving::Ring {
-            position: metres(model.ring(state, 0).position),
+            position: seen.metres(model.ring(state, 0).position),
             race_spin,
             race_angle: self.turned[0] + since * race_spin,
         }
