@@ -3,21 +3,19 @@
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
 
-use super::auto::auto;
 use super::base::BaseTable;
 use super::calibration::CalibrationTable;
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
-use super::file::{ModelTable, RunTable, SceneFile, StatorTable};
+use super::file::{RunTable, SceneFile, StatorTable};
 use super::machine::{retainer, rotor, start};
 use super::materials::materials;
+use super::model::model;
+use super::outputs::auto;
 use super::rule::{Keys, MICRO, MILLI, translate};
 use super::scales;
 use super::support::{BallBearingTable, SupportTable};
-use super::{
-    BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Start,
-    Support, TwoPlane, limits,
-};
+use super::{BallBearing, Fidelity, Retainer, Rotor, Run, Scene, Start, Support, TwoPlane, limits};
 use crate::sensors::SensorsConfig;
 use touchdown_base::plain::Number;
 
@@ -41,7 +39,8 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let compliant = compliant(&file, two_plane.as_ref(), ball_bearing)?;
     let needed = needed(&file, two_plane.as_ref(), compliant);
     let model = model(&file.model, &run, needed)?;
-    let auto = auto(&file, &model)?;
+    let top = file.fidelity.as_deref();
+    let auto = auto(top, &file.model, file.outputs.as_ref(), &model)?;
     let calibration = file.calibration.as_ref();
     let calibration = calibration.map(CalibrationTable::check).transpose()?;
     let sensors = SensorsConfig {
@@ -264,55 +263,4 @@ fn two_plane(
     }
     two_plane.check_start(start)?;
     Ok(Some(two_plane))
-}
-
-fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
-    const KEYS: Keys = Keys("model");
-    let rung = KEYS.named_or("rung", &table.rung, needed, Fidelity::ALL)?;
-    let parts = match rung {
-        Fidelity::Support => "[support] or [ball_bearing]",
-        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
-        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
-    };
-    // The coupled rung has all that rigid rings have.
-    let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
-    let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
-    if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping, limit or times: leave them out, or rung";
-        return Err(KEYS.broken("rung", rule));
-    }
-    if !parts.is_empty() && needed != rung && !more {
-        let rule = format!("rung = \"{}\" needs {parts}", rung);
-        return Err(KEYS.broken("rung", rule));
-    }
-    let schemes = rung.schemes();
-    let scheme = KEYS.named_or("scheme", &table.scheme, schemes[0], schemes)?;
-    let (double, both) = (Precision::F64, &Precision::ALL);
-    let precision = KEYS.named_or("precision", &table.precision, double, both)?;
-    let math = KEYS.named_or("math", &table.math, Math::Libm, &Math::ALL)?;
-    if !rung.maths(precision).contains(&math) {
-        let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
-        return Err(KEYS.broken("math", rule));
-    }
-    let step = match table.step_us {
-        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
-        None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
-    };
-    let cutoff = match table.cutoff_mm_s {
-        None => 0.0,
-        Some(_) if rung != Fidelity::Rigid => {
-            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
-            return Err(KEYS.broken("cutoff_mm_s", rule));
-        }
-        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
-    };
-    Ok(Model {
-        rung,
-        scheme,
-        precision,
-        math,
-        step,
-        cutoff,
-        left_out: LeftOut::default(),
-    })
 }

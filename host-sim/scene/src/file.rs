@@ -12,6 +12,8 @@ use super::faults::FaultTable;
 use super::magnet::MagnetTable;
 use super::materials::MaterialsTable;
 use super::mode::ModeTable;
+use super::model::ModelTable;
+use super::outputs::OutputsTable;
 use super::rule::exactly;
 use super::sensors::SensorsConfig;
 use super::support::{BallBearingTable, SupportTable};
@@ -151,29 +153,4 @@ pub(super) struct RunTable {
     pub inclination_deg: f64,
     pub sample_rate_hz: Option<f64>,
     pub seed: Option<u64>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ModelTable {
-    pub rung: Option<String>,
-    pub scheme: Option<String>,
-    pub math: Option<String>,
-    pub precision: Option<String>,
-    pub step_us: Option<f64>,
-    pub cutoff_mm_s: Option<f64>,
-    pub contact: Option<String>,
-    pub fidelity: Option<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct OutputsTable {
-    pub regime: Option<bool>,
-    pub impact_time_us: Option<f64>,
-    pub impact_speed_percent: Option<f64>,
-    pub phases_us: Option<f64>,
-    pub whirl_load_percent: Option<f64>,
-    pub peak_force_percent: Option<f64>,
-    pub contact_time_percent: Option<f64>,
 }

@@ -1,6 +1,5 @@
 //! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
 
-mod auto;
 mod base;
 mod builtin;
 pub mod calibration;

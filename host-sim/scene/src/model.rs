@@ -1,7 +1,11 @@
 //! What is modelled, and how it is computed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use strum::{Display, IntoStaticStr, VariantArray};
+
+use super::diagnostic::Diagnostic;
+use super::rule::{Keys, MICRO, MILLI};
+use super::{Run, limits};
 
 /// Rung of the ladder of models.
 #[derive(
@@ -180,4 +184,68 @@ impl Math {
 impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    pub rung: Option<String>,
+    pub scheme: Option<String>,
+    pub math: Option<String>,
+    pub precision: Option<String>,
+    pub step_us: Option<f64>,
+    pub cutoff_mm_s: Option<f64>,
+    pub contact: Option<String>,
+    pub fidelity: Option<String>,
+}
+
+pub(super) fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
+    const KEYS: Keys = Keys("model");
+    let rung = KEYS.named_or("rung", &table.rung, needed, Fidelity::ALL)?;
+    let parts = match rung {
+        Fidelity::Support => "[support] or [ball_bearing]",
+        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
+        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
+    };
+    // The coupled rung has all that rigid rings have.
+    let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
+    let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
+    if less {
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping, limit or times: leave them out, or rung";
+        return Err(KEYS.broken("rung", rule));
+    }
+    if !parts.is_empty() && needed != rung && !more {
+        let rule = format!("rung = \"{}\" needs {parts}", rung);
+        return Err(KEYS.broken("rung", rule));
+    }
+    let schemes = rung.schemes();
+    let scheme = KEYS.named_or("scheme", &table.scheme, schemes[0], schemes)?;
+    let (double, both) = (Precision::F64, &Precision::ALL);
+    let precision = KEYS.named_or("precision", &table.precision, double, both)?;
+    let math = KEYS.named_or("math", &table.math, Math::Libm, &Math::ALL)?;
+    if !rung.maths(precision).contains(&math) {
+        let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
+        return Err(KEYS.broken("math", rule));
+    }
+    let step = match table.step_us {
+        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
+        None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
+    };
+    let cutoff = match table.cutoff_mm_s {
+        None => 0.0,
+        Some(_) if rung != Fidelity::Rigid => {
+            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
+            return Err(KEYS.broken("cutoff_mm_s", rule));
+        }
+        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+    };
+    Ok(Model {
+        rung,
+        scheme,
+        precision,
+        math,
+        step,
+        cutoff,
+        left_out: LeftOut::default(),
+    })
 }
