@@ -151,12 +151,8 @@ impl Controller {
     pub fn text(&self, paint: Paint) -> String {
         let mut text = table(&self.outputs, paint);
         let dangers = self.alarms.iter().filter(|it| it.level == Level::Danger);
-        text += &format!(
-            "guard: {} touches, {} alarms, {} of them danger\n",
-            self.touches,
-            self.alarms.len(),
-            dangers.count()
-        );
+        let (touches, alarms, dangers) = (self.touches, self.alarms.len(), dangers.count());
+        text += &format!("guard: {touches} touches, {alarms} alarms, {dangers} of them danger\n");
         for it in &self.orders {
             let (time, came) = (it.time_s * 1e3, it.why.as_deref().unwrap_or("done"));
             text += &format!("{} at {time:.4} ms: {came}\n", it.order);

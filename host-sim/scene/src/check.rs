@@ -102,10 +102,9 @@ pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Diagnos
     }
     let longest = compliance.longest_step();
     if step > longest {
+        let [longest, step] = [longest, step].map(|it| Number(it / MICRO));
         let rule = format!(
-            "step_us must be no more than {:.4}, the limit of stability 2/omega_c of this contact, is {}",
-            Number(longest / MICRO),
-            Number(step / MICRO)
+            "step_us must be no more than {longest:.4}, the limit of stability 2/omega_c of this contact, is {step}"
         );
         return Err(Diagnostic::new("model", "step_us", rule));
     }
@@ -144,10 +143,8 @@ const USUAL_RATE: f64 = 20_000.0;
 fn run(table: &RunTable) -> Result<Run, Diagnostic> {
     let duration = RUN.above_zero("duration_s", table.duration_s)?;
     if duration > 86_400.0 {
-        let rule = format!(
-            "duration_s must be no more than 86400, is {}",
-            Number(duration)
-        );
+        let duration = Number(duration);
+        let rule = format!("duration_s must be no more than 86400, is {duration}");
         return Err(RUN.broken("duration_s", rule));
     }
     let gravity = gravity(table.gravity_m_s2.unwrap_or(STANDARD_GRAVITY))?;
@@ -155,14 +152,12 @@ fn run(table: &RunTable) -> Result<Run, Diagnostic> {
     let inclination = RUN.between("inclination_deg", inclination, limits::INCLINATION_DEG)?;
     let rate = table.sample_rate_hz.unwrap_or(USUAL_RATE);
     let across = gravity * inclination.to_radians().cos();
+    // A vertical axis leaves rounding only.
+    let pulls = across >= limits::LEAST_GRAVITY_M_S2;
+    let gravity = if pulls { across } else { 0.0 };
     Ok(Run {
         duration,
-        // A vertical axis leaves rounding only.
-        gravity: if across < limits::LEAST_GRAVITY_M_S2 {
-            0.0
-        } else {
-            across
-        },
+        gravity,
         sample_rate: RUN.between("sample_rate_hz", rate, 100.0..=200_000.0)?,
         seed: table.seed.unwrap_or(1),
     })
@@ -172,11 +167,8 @@ fn run(table: &RunTable) -> Result<Run, Diagnostic> {
 pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
     let gravity = RUN.zero_or_more("gravity_m_s2", given)?;
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
-        let rule = format!(
-            "gravity_m_s2 must be 0, or {} or more, is {}",
-            Number(limits::LEAST_GRAVITY_M_S2),
-            Number(gravity)
-        );
+        let [least, is] = [limits::LEAST_GRAVITY_M_S2, gravity].map(Number);
+        let rule = format!("gravity_m_s2 must be 0, or {least} or more, is {is}");
         return Err(RUN.broken("gravity_m_s2", rule));
     }
     RUN.between("gravity_m_s2", gravity, limits::GRAVITY_M_S2)

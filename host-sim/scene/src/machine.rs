@@ -16,10 +16,9 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
     KEYS.above_zero("polar_inertia_kg_m2", polar_inertia)?;
     if !limits::INERTIA_RATIO.contains(&(polar_inertia / solid)) {
         let (low, high) = limits::INERTIA_RATIO.into_inner();
+        let is = Number(polar_inertia);
         let rule = format!(
-            "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
-             ({solid:.3e}), is {}",
-            Number(polar_inertia)
+            "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder ({solid:.3e}), is {is}"
         );
         return Err(KEYS.broken("polar_inertia_kg_m2", rule));
     }
@@ -83,10 +82,9 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
     let distance = x.hypot(y);
     if distance > clearance * (1.0 + ON_THE_WALL) {
         let key = if x.abs() > y.abs() { "x_mm" } else { "y_mm" };
+        let [distance, clearance] = [distance, clearance].map(|it| Number(it / MILLI));
         let rule = format!(
-            "the start is outside the gap: {} mm from the centre, the clearance is {} mm",
-            Number(distance / MILLI),
-            Number(clearance / MILLI)
+            "the start is outside the gap: {distance} mm from the centre, the clearance is {clearance} mm"
         );
         return Err(KEYS.broken(key, rule));
     }
