@@ -7,10 +7,10 @@ use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
 use crate::accuracy;
+use crate::controller_trace::Procedure;
 use crate::detection::detection;
 use crate::model::{self, ModelRun};
 use crate::outcome::{Outcome, TracePoint};
-use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
 use crate::trace::Trace;

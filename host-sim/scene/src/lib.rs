@@ -164,26 +164,21 @@ impl Scene {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.retainer.clearance > self.sensors.range {
+            let (clearance, range) = (self.retainer.clearance * 1e3, self.sensors.range * 1e6);
             warnings.push(format!(
-                "{}: clearance_mm is {}, beyond the sensors' range of {} um: they saturate before \
-                 the rotor touches",
-                self.name,
-                self.retainer.clearance * 1e3,
-                self.sensors.range * 1e6
+                "clearance_mm is {clearance}, beyond the sensors' range of {range} um: they saturate before the rotor touches"
             ));
         }
         for part in parts::parts(self) {
             if part.asked && !part.modelled {
-                warnings.push(format!(
-                    "{}: {}: {}, the scene has rung {}",
-                    self.name, part.name, part.reason, self.model.rung
-                ));
+                let (name, reason, rung) = (part.name, part.reason, self.model.rung);
+                warnings.push(format!("{name}: {reason}, the scene has rung {rung}"));
             }
         }
-        let tilt = self.two_plane.as_ref().and_then(TwoPlane::tilt_warning);
-        warnings.extend(tilt.map(|it| format!("{}: {it}", self.name)));
+        warnings.extend(self.two_plane.as_ref().and_then(TwoPlane::tilt_warning));
         warnings.extend(self.step_warning());
-        warnings
+        let told = warnings.iter().map(|it| format!("{}: {it}", self.name));
+        told.collect()
     }
 
     /// The longest step that follows all that the model moves, s, what sets it, and what comes of longer ones; none where
@@ -217,14 +212,9 @@ impl Scene {
     fn step_warning(&self) -> Option<String> {
         let step = self.model.step;
         let (longest, of, then) = self.longest_step()?;
-        (step > longest).then(|| {
-            format!(
-                "{}: step_us is {}, above {of} = {:.4} us: {then}",
-                self.name,
-                (step * 1e12).round() * 1e-6,
-                longest * 1e6
-            )
-        })
+        let (given, longest_us) = ((step * 1e12).round() * 1e-6, longest * 1e6);
+        let rule = format!("step_us is {given}, above {of} = {longest_us:.4} us: {then}");
+        (step > longest).then_some(rule)
     }
 
     /// What the monitor is told of this scene.

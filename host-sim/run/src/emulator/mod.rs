@@ -10,9 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 use std::time::Duration;
 
-use crate::controller_trace::ControllerTrace;
-use crate::monitor_output::MonitorOutput;
-use crate::procedure::Procedure;
+use crate::controller_trace::{ControllerTrace, MonitorOutput, Procedure};
 use defmt_decoder::{DecodeError, Table};
 use touchdown_base::interrupt::TemporaryFolder;
 use touchdown_core::monitor::MonitorConfig;

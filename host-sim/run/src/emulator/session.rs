@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::{
     Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, failed, read,
 };
-use crate::monitor_output::MonitorOutput;
+use crate::controller_trace::MonitorOutput;
 use touchdown_base::interrupt::{Registered, spawn};
 use touchdown_files::link::Client;
 use touchdown_protocol::wire::Switching;
