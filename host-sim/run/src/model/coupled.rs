@@ -15,8 +15,7 @@ use super::machine::{MachineDrop, OnStep};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::{FollowedDrop, ModelRun};
 use super::{Subject, scaled};
-use touchdown_scene::scales::start_speed;
-use touchdown_scene::{Fidelity, MODES, Removable, Scene};
+use touchdown_scene::{Fidelity, MODES, Removable, Scene, scales};
 
 /// Coordinates of a rotor that only moves, that tilts too, and that bends too. Modes that a scene does not have
 /// stand still, because each number more is built for every number of rings and kind of numbers.
@@ -97,17 +96,8 @@ fn built<R: Precision, const N: usize, const Q: usize>(
 fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
     let rings = seats(scene).try_into();
     let mut config = CoupledConfig {
-        mass: scene.rotor.mass,
-        polar_inertia: scene.rotor.polar_inertia,
-        transverse_inertia: scene.rotor.polar_inertia,
         rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,
-        gravity: [0.0, -scene.run.gravity],
-        speed: start_speed(scene),
-        unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); _],
-        base: None,
-        modes: [None; MODES],
-        step: scene.model.step,
+        ..CoupledConfig::of_plane(&scales::config(scene), [0.0; N])
     };
     let Some(machine) = ends(scene) else {
         return Ok(config);

@@ -130,14 +130,11 @@ impl<R: Precision, M: Stepper<R> + Clone> FollowedDrop for PlaneDrop<'_, R, M> {
             return Some(held(self.scene, time));
         }
         let fraction = self.to(time);
-        let now = if fraction > 0.0 {
-            let mut state = self.state.clone();
+        let mut state = self.state.clone();
+        if fraction > 0.0 {
             self.model.part_step(&mut state, R::lit(fraction), |_| ());
-            self.model.kinematics(&state)
-        } else {
-            self.model.kinematics(&self.state)
-        };
-        let rotor = self.seen.state(&now, time);
+        }
+        let rotor = self.seen.state(&self.model.kinematics(&state), time);
         let moving = match held(self.scene, time).moving {
             Moving::Ends(_) => Moving::Ends([rotor.position; RINGS]),
             other => other,
