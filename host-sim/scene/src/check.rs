@@ -16,7 +16,7 @@ use super::rule::{Keys, MICRO, MILLI, translate};
 use super::scales;
 use super::support::{BallBearingTable, SupportTable};
 use super::{BallBearing, Fidelity, Retainer, Rotor, Run, Scene, Start, Support, TwoPlane, limits};
-use crate::sensors::SensorsConfig;
+use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
 
 pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
@@ -41,14 +41,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let model = model(&file.model, &run, needed)?;
     let top = file.fidelity.as_deref();
     let auto = auto(top, &file.model, file.outputs.as_ref(), &model)?;
-    let calibration = file.calibration.as_ref();
-    let calibration = calibration.map(CalibrationTable::check).transpose()?;
-    let sensors = SensorsConfig {
-        calibration,
-        tachometers,
-        ..file.sensors
-    };
-    sensors.check().map_err(|error| translate(&error))?;
+    let sensors = sensors(&file, tachometers)?;
     let faults = faults(&file.fault, &sensors, &run)?;
     let mut scene = Scene {
         name: name.to_owned(),
@@ -84,6 +77,21 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     // The core has the last word: what it refuses is a flaw of the key that the value came from.
     Monitor::try_new(&scene.monitor_config()).map_err(|error| translate(&error))?;
     Ok(scene)
+}
+
+/// With what was found of them, and those of the ball bearing.
+fn sensors(
+    file: &SceneFile,
+    tachometers: Option<Tachometers>,
+) -> Result<SensorsConfig, Diagnostic> {
+    let calibration = file.calibration.as_ref().map(CalibrationTable::check);
+    let sensors = SensorsConfig {
+        calibration: calibration.transpose()?,
+        tachometers,
+        ..file.sensors
+    };
+    sensors.check().map_err(|error| translate(&error))?;
+    Ok(sensors)
 }
 
 /// Radial, m.
