@@ -4,7 +4,7 @@ use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Fingerprint, Monitor, MonitorConfig, MonitorState};
 use touchdown_core::sample::Sample;
 use touchdown_rotor::error::ConfigError;
-use touchdown_run::monitor_output::MonitorOutput;
+use touchdown_run::controller_trace::MonitorOutput;
 
 /// Runs the monitor over `samples`.
 pub fn run(

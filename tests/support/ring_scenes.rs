@@ -255,10 +255,7 @@ impl Fall {
             damping: mount.damping,
             vertical: None,
             friction: 0.0,
-            stop: mount.stop.map(|stop| touchdown_scene::Stop {
-                travel: stop.travel,
-                stiffness: stop.stiffness,
-            }),
+            stop: mount.stop,
         });
         let race = self.race.map(|race| reference::coupled::Race {
             inertia: race.inertia,

@@ -3,7 +3,7 @@
 use crate::history::{History, ModelEvent};
 
 /// What a drop did.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Histories {
     /// The rotor, in contact while it is in any ring; positions of impacts are those in their ring, the
     /// end is that of the centre of mass.

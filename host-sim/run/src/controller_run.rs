@@ -15,9 +15,7 @@ use touchdown_protocol::link::Hello;
 use touchdown_protocol::wire::Switching;
 use touchdown_rotor::error::ConfigError;
 
-use crate::controller_trace::ControllerTrace;
-use crate::monitor_output::MonitorOutput;
-use crate::procedure::Procedure;
+use crate::controller_trace::{ControllerTrace, MonitorOutput, Procedure};
 use touchdown_files::ram_nor::RamNor;
 
 type RamLog = DropLog<RamNor, EMULATED_SLOTS>;

@@ -1,10 +1,14 @@
-//! What the controller did over a run, besides what the monitor said: outputs, log and link.
+//! A run of the controller: what is done to it, what its monitor says, and what it does besides: outputs, log and link.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 use touchdown_core::checksum::CRC;
 use touchdown_core::event::{Alarm, Level, Notice, Ordered};
+use touchdown_core::learnt::Learnt;
+use touchdown_core::monitor::Summary;
+use touchdown_core::sensing::PLANES;
+use touchdown_core::severity::Severity;
 use touchdown_protocol::controller::{Fault, Mode};
 use touchdown_protocol::link::{Counters, Hello, State};
 use touchdown_protocol::wire::Switching;
@@ -14,6 +18,61 @@ use touchdown_base::paint::Paint;
 use touchdown_files::controller::{AlarmAt, OutputsFrom, table};
 use touchdown_files::drop_log::{Completeness, Dump, Episode};
 use touchdown_files::link::refused_why;
+
+/// Notices that are kept; a recording of any length has to fit.
+const MOST_NOTICES: usize = 100_000;
+
+/// What is done to a controller over a recording, and where it begins. By default a lift was seen before it, and
+/// nothing is ordered.
+#[derive(Clone, Debug, Default)]
+pub struct Procedure {
+    /// What the monitor had learnt before the first sample.
+    pub learnt: Option<Box<Learnt>>,
+    /// Switched on with the first sample: nothing is proven.
+    pub power_on: bool,
+    /// Samples, from 0, before which an order to clear comes.
+    pub clear_at: BTreeSet<u64>,
+    /// Upper ends of the zones A, B and C, as parts of the clearance.
+    pub zones: [f64; 3],
+}
+
+impl Procedure {
+    /// The zone of that plane of a sample that is farther out, by displacements and `clearance`, m; none where no plane
+    /// delivers.
+    pub(crate) fn zone(&self, clearance: f64, planes: [Option<[f32; 2]>; PLANES]) -> Option<usize> {
+        let distances = planes.into_iter().flatten();
+        let distances = distances.map(|[x, y]| f64::from(x).hypot(f64::from(y)));
+        let distance = distances.reduce(f64::max)?;
+        let inner = self.zones.iter().filter(|it| distance > **it * clearance);
+        Some(inner.count())
+    }
+}
+
+/// What the monitor said over a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MonitorOutput {
+    /// In the order of the ticks.
+    pub notices: Vec<Notice>,
+    /// Later ones, counted.
+    pub left_out: u64,
+    /// Of the last drop in it.
+    pub severity: Severity,
+    /// Last.
+    pub summary: Summary,
+    /// What the target printed.
+    pub log: Vec<String>,
+}
+
+impl MonitorOutput {
+    /// Takes the next notice, while there is room.
+    pub(crate) fn hear(&mut self, notice: Notice) {
+        if self.notices.len() < MOST_NOTICES {
+            self.notices.push(notice);
+        } else {
+            self.left_out += 1;
+        }
+    }
+}
 
 /// What the controller did. The same bits on the desktop and in the emulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,12 +210,8 @@ impl Controller {
     pub fn text(&self, paint: Paint) -> String {
         let mut text = table(&self.outputs, paint);
         let dangers = self.alarms.iter().filter(|it| it.level == Level::Danger);
-        text += &format!(
-            "guard: {} touches, {} alarms, {} of them danger\n",
-            self.touches,
-            self.alarms.len(),
-            dangers.count()
-        );
+        let (touches, alarms, dangers) = (self.touches, self.alarms.len(), dangers.count());
+        text += &format!("guard: {touches} touches, {alarms} alarms, {dangers} of them danger\n");
         for it in &self.orders {
             let (time, came) = (it.time_s * 1e3, it.why.as_deref().unwrap_or("done"));
             text += &format!("{} at {time:.4} ms: {came}\n", it.order);

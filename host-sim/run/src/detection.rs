@@ -3,7 +3,7 @@
 use touchdown_core::event::{Event, EventKind, Notice, Touch};
 use touchdown_core::forecast::Outlook;
 
-use crate::monitor_output::MonitorOutput;
+use crate::controller_trace::MonitorOutput;
 use crate::outcome::{DetectedEvent, Detection, Forecast, TouchEvent};
 use crate::timebase::Timebase;
 use touchdown_files::drop_log::ChannelFault;

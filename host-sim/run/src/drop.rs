@@ -7,18 +7,17 @@ use touchdown_core::sensing::Sensing;
 use touchdown_rotor::error::ConfigError;
 
 use crate::accuracy;
-use crate::controller_trace::ControllerTrace;
+use crate::controller_trace::Procedure;
 use crate::detection::detection;
 use crate::model::{self, ModelRun};
-use crate::outcome::{Detection, Outcome, TracePoint};
-use crate::procedure::Procedure;
+use crate::outcome::{Outcome, TracePoint};
 use crate::target::Target;
 use crate::timebase::Timebase;
 use crate::trace::Trace;
 use touchdown_base::failure::Failure;
 use touchdown_base::progress::Progress;
 use touchdown_base::rings::Histories;
-use touchdown_base::spectrogram::{Analyser, Spectrogram};
+use touchdown_base::spectrogram::Analyser;
 use touchdown_files::stream::{Columns, StreamWriter, to_row};
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Faults, Motion, Sensors, SensorsConfig};
@@ -32,11 +31,14 @@ pub fn run<W: Write>(
     stream: Option<W>,
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let mut model = model::follow(scene).map_err(|error| refused(scene, &error))?;
-    let sensed = sensed(scene, target, stream, &mut |time| model.advance(time))?;
+    let (sensed, stream) = sensed(scene, target, stream, &mut |time| model.advance(time))?;
     let model = model.finish();
-    let truth = model.histories.clone();
-    let (mut outcome, stream) = outcome(model, truth, sensed);
-    outcome.accuracy = accuracy::estimate(scene, &outcome.model);
+    let outcome = Outcome {
+        truth: model.histories.clone(),
+        accuracy: accuracy::estimate(scene, &model),
+        model,
+        ..sensed
+    };
     Ok((outcome, stream))
 }
 
@@ -48,16 +50,16 @@ pub fn by_reference<W: Write>(
 ) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let model = model::run(scene).map_err(|error| refused(scene, &error))?;
     let mut reference = Truth::new(scene);
-    let sensed = sensed(scene, target, stream, &mut |time| {
+    let (sensed, stream) = sensed(scene, target, stream, &mut |time| {
         let state = reference.advance(time);
         reference.given_up().is_none().then_some(state)
     })?;
-    let given_up = reference.given_up();
-    let (outcome, stream) = outcome(model, reference.finish(), sensed);
     let outcome = Outcome {
+        model,
         by_reference: true,
-        given_up,
-        ..outcome
+        given_up: reference.given_up(),
+        truth: reference.finish(),
+        ..sensed
     };
     Ok((outcome, stream))
 }
@@ -66,22 +68,14 @@ fn refused(scene: &Scene, error: &ConfigError) -> Failure {
     Failure::Usage(format!("{}: {error}", scene.name))
 }
 
-/// What sensors, detector and controller made of a drop.
-struct Sensed<W> {
-    trace: Vec<TracePoint>,
-    spectrogram: Spectrogram,
-    detection: Detection,
-    conduct: ControllerTrace,
-    stream: io::Result<Option<W>>,
-}
-
-/// `mover` moves the rotor that the sensors see: it tells the machine at a time (s), nothing once it is given up.
+/// What sensors, detector and controller made of a drop, with neither model nor truth. `mover` moves the rotor that the
+/// sensors see: it tells the machine at a time (s), nothing once it is given up.
 fn sensed<W: Write>(
     scene: &Scene,
     target: &Target,
     stream: Option<W>,
     mover: &mut dyn FnMut(f64) -> Option<TrueState>,
-) -> Result<Sensed<W>, Failure> {
+) -> Result<(Outcome, io::Result<Option<W>>), Failure> {
     let (config, rate) = (&scene.sensors, scene.run.sample_rate);
     let sensors = Sensors::try_new(config, rate).map_err(|error| refused(scene, &error))?;
     let sensing = Sensing::try_new(&config.sensing()).map_err(|error| refused(scene, &error))?;
@@ -100,14 +94,9 @@ fn sensed<W: Write>(
         progress.at(number + 1);
         let time = (number as f64 - levitated as f64) / rate;
         let state = mover(time)?;
-        let motion = Motion {
-            bearing: bearing(scene, state.moving),
-            ..state.motion(time < 0.0)
-        };
-        let mut sample = sensors.read(&mut chain, &motion);
+        let mut sample = sensors.read(&mut chain, &motion(scene, &state, time < 0.0));
         faults.inject(&mut sample, time);
-        let [plane, _] = sensing.planes(&sample);
-        let sensed = plane.map(|plane| plane.map(f64::from));
+        let sensed = sensing.planes(&sample)[0].map(|plane| plane.map(f64::from));
         analyser.take(time, sensed);
         trace.push(TracePoint {
             state: state.rotor,
@@ -128,13 +117,18 @@ fn sensed<W: Write>(
     };
     let (answer, conduct) = target.control(&scene.monitor_config(), &procedure, samples)?;
     let stream = stream.map(|stream| stream.and_then(StreamWriter::finish));
-    Ok(Sensed {
+    let sensed = Outcome {
+        model: ModelRun::default(),
+        truth: Histories::default(),
+        accuracy: None,
+        by_reference: false,
+        given_up: None,
         trace: trace.finish(),
         spectrogram: analyser.finish(),
         detection: detection(&answer, Timebase::of(scene)),
         conduct,
-        stream: stream.transpose(),
-    })
+    };
+    Ok((sensed, stream.transpose()))
 }
 
 fn columns(sensors: &SensorsConfig) -> Columns {
@@ -147,24 +141,11 @@ fn columns(sensors: &SensorsConfig) -> Columns {
     }
 }
 
-/// The outcome where the model moved the rotor and nothing is known of its accuracy.
-fn outcome<W>(
-    model: ModelRun,
-    truth: Histories,
-    sensed: Sensed<W>,
-) -> (Outcome, io::Result<Option<W>>) {
-    let outcome = Outcome {
-        model,
-        truth,
-        accuracy: None,
-        by_reference: false,
-        given_up: None,
-        trace: sensed.trace,
-        spectrogram: sensed.spectrogram,
-        detection: sensed.detection,
-        conduct: sensed.conduct,
-    };
-    (outcome, sensed.stream)
+fn motion(scene: &Scene, state: &TrueState, levitated: bool) -> Motion {
+    Motion {
+        bearing: bearing(scene, state.moving),
+        ..state.motion(levitated)
+    }
 }
 
 /// Angles of inner ring and cage since the release, rad.
@@ -173,5 +154,5 @@ pub fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
         return None;
     };
     let bearing = scene.ball_bearing?;
-    Some([race_angle, bearing.cage_ratio * race_angle])
+    Some([race_angle, bearing.race.cage_ratio * race_angle])
 }

@@ -2,8 +2,6 @@
 
 pub mod model;
 
-pub mod monitor_output;
-
 pub mod accuracy;
 pub mod controller_run;
 pub mod controller_trace;
@@ -14,7 +12,6 @@ pub mod timebase;
 
 pub mod detection;
 pub mod outcome;
-pub mod procedure;
 pub mod trace;
 
 pub mod matching;

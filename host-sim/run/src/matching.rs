@@ -5,6 +5,8 @@
 //! be declared after the release. The regime at the end belongs to the last contact, and its detection
 //! is the first event of that kind declared in it.
 
+use std::collections::HashSet;
+
 use crate::outcome::{DetectedEvent, Detection};
 use touchdown_base::history::{History, Phase, PhaseKind, Regime};
 use touchdown_core::event::EventKind;
@@ -92,12 +94,9 @@ pub fn match_events(truth: &History, detection: &Detection) -> Matches {
         regime.onset_error_s = None;
         events.push(regime);
     }
-    let mut known = vec![false; detected.len()];
-    for index in events.iter().filter_map(|event| event.detected) {
-        known[index] = true;
-    }
+    let known: HashSet<usize> = events.iter().filter_map(|event| event.detected).collect();
     let false_events = (0..detected.len())
-        .filter(|&index| !known[index] && contradicted(truth, &detected[index]))
+        .filter(|index| !known.contains(index) && contradicted(truth, &detected[*index]))
         .collect();
     Matches {
         events,
@@ -161,16 +160,25 @@ fn pair(onsets: &[f64], detected: &[DetectedEvent], kind: EventKind) -> Vec<Opti
             }
         }
     }
+    nearest_pairs(near, onsets.len(), detected.len()).0
+}
+
+/// One to one, the nearest first: `near` has a distance, and which of `these` and of `those` are so far apart. For each of
+/// `these` the other, and which of `those` have one.
+pub(crate) fn nearest_pairs(
+    mut near: Vec<(f64, usize, usize)>,
+    these: usize,
+    those: usize,
+) -> (Vec<Option<usize>>, Vec<bool>) {
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut pairs = vec![None; onsets.len()];
-    let mut taken = vec![false; detected.len()];
-    for (_, number, index) in near {
-        if pairs[number].is_none() && !taken[index] {
-            pairs[number] = Some(index);
-            taken[index] = true;
+    let (mut pairs, mut taken) = (vec![None; these], vec![false; those]);
+    for (_, this, that) in near {
+        if pairs[this].is_none() && !taken[that] {
+            pairs[this] = Some(that);
+            taken[that] = true;
         }
     }
-    pairs
+    (pairs, taken)
 }
 
 /// Whether an event without a true counterpart is false rather than beyond what the truth says.

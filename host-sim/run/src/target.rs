@@ -7,10 +7,8 @@ use touchdown_core::sample::Sample;
 use touchdown_core::sensing::Sensing;
 
 use crate::controller_run;
-use crate::controller_trace::ControllerTrace;
+use crate::controller_trace::{ControllerTrace, MonitorOutput, Procedure};
 use crate::emulator::{Emulator, EmulatorError};
-use crate::monitor_output::MonitorOutput;
-use crate::procedure::Procedure;
 use touchdown_base::failure::Failure;
 use touchdown_rotor::error::ConfigError;
 

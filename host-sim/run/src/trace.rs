@@ -16,35 +16,27 @@ pub struct Trace {
 }
 
 /// Keeps every point at first; each time it is full, every second one goes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Thinned {
     points: Vec<TracePoint>,
-    stride: u64,
+    /// How often it was full.
+    halvings: u32,
     seen: u64,
-}
-
-impl Default for Thinned {
-    fn default() -> Self {
-        Self {
-            points: Vec::new(),
-            stride: 1,
-            seen: 0,
-        }
-    }
 }
 
 impl Thinned {
     fn push(&mut self, point: TracePoint, most: usize) {
-        if self.seen.is_multiple_of(self.stride) {
+        let stride = |halvings: u32| 1_u64 << halvings;
+        if self.seen.is_multiple_of(stride(self.halvings)) {
             if self.points.len() >= most {
                 let mut number = 0;
                 self.points.retain(|_| {
                     number += 1;
                     number % 2 == 1
                 });
-                self.stride *= 2;
+                self.halvings += 1;
             }
-            if self.seen.is_multiple_of(self.stride) {
+            if self.seen.is_multiple_of(stride(self.halvings)) {
                 self.points.push(point);
             }
         }

@@ -1,26 +1,19 @@
 //! `[base]`: motion of what the machine stands on.
 
 use serde::Deserialize;
+use touchdown_models::BaseConfig;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{Keys, MILLI};
-use super::{limits, list};
+use super::limits;
+use super::rule::{Keys, MILLI, exactly};
 
-/// A base that goes to and fro: by its amplitude times the cosine of an angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Base {
-    /// m.
-    pub amplitude: [f64; 2],
-    /// Of the angle, rad/s.
-    pub rate: f64,
-    /// At the release, rad.
-    pub phase: f64,
-}
+/// A base that goes to and fro.
+pub type Base = BaseConfig<f64>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BaseTable {
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     amplitude_mm: [f64; 2],
     frequency_hz: f64,
     #[serde(default)]
@@ -30,13 +23,11 @@ pub(super) struct BaseTable {
 impl BaseTable {
     pub fn check(&self) -> Result<Base, Diagnostic> {
         const KEYS: Keys = Keys("base");
-        for amplitude in self.amplitude_mm {
-            KEYS.between("amplitude_mm", amplitude, limits::BASE_MM)?;
-        }
+        let amplitude = KEYS.each("amplitude_mm", self.amplitude_mm, limits::BASE_MM)?;
         let frequency = KEYS.between("frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
         let phase = KEYS.between("phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
         Ok(Base {
-            amplitude: self.amplitude_mm.map(|it| MILLI * it),
+            amplitude: amplitude.map(|it| MILLI * it),
             rate: std::f64::consts::TAU * frequency,
             phase: phase.to_radians(),
         })

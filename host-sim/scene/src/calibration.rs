@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 use touchdown_core::sensing::{Calibration, PlaneCalibration};
 
 use super::diagnostic::Diagnostic;
-use super::list;
-use super::rule::{Keys, MICRO};
+use super::rule::{Keys, MICRO, exactly};
 
 const KEYS: Keys = Keys("calibration");
 
@@ -31,10 +30,10 @@ pub struct CalibrationTable {
 #[serde(deny_unknown_fields)]
 pub struct PlaneTable {
     /// What each channel reads at the retainer's centre, um.
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     pub zero_um: [f64; 2],
     /// Reading over displacement, by channel.
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     pub gain: [f64; 2],
     /// Angle between the axes, less 90 degrees.
     pub skew_deg: f64,

@@ -2,23 +2,20 @@
 
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
-use touchdown_core::sensing::Calibration;
 
-use super::auto::auto;
 use super::base::BaseTable;
 use super::calibration::CalibrationTable;
-use super::contact::{materials, step_in_contact};
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
-use super::file::{ModelTable, RunTable, SceneFile, SensorsTable, StatorTable};
+use super::file::{RunTable, SceneFile, StatorTable};
 use super::machine::{retainer, rotor, start};
+use super::materials::materials;
+use super::model::model;
+use super::outputs::auto;
 use super::rule::{Keys, MICRO, MILLI, translate};
 use super::scales;
 use super::support::{BallBearingTable, SupportTable};
-use super::{
-    BallBearing, Fidelity, LeftOut, Math, Model, Precision, Retainer, Rotor, Run, Scene, Start,
-    Support, TwoPlane, limits,
-};
+use super::{BallBearing, Fidelity, Retainer, Rotor, Run, Scene, Start, Support, TwoPlane, limits};
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
 
@@ -42,10 +39,9 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let compliant = compliant(&file, two_plane.as_ref(), ball_bearing)?;
     let needed = needed(&file, two_plane.as_ref(), compliant);
     let model = model(&file.model, &run, needed)?;
-    let auto = auto(&file, &model)?;
-    let calibration = file.calibration.as_ref();
-    let calibration = calibration.map(CalibrationTable::check).transpose()?;
-    let sensors = sensors(&file.sensors, calibration, tachometers)?;
+    let top = file.fidelity.as_deref();
+    let auto = auto(top, &file.model, file.outputs.as_ref(), &model)?;
+    let sensors = sensors(&file, tachometers)?;
     let faults = faults(&file.fault, &sensors, &run)?;
     let mut scene = Scene {
         name: name.to_owned(),
@@ -83,10 +79,44 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     Ok(scene)
 }
 
+/// With what was found of them, and those of the ball bearing.
+fn sensors(
+    file: &SceneFile,
+    tachometers: Option<Tachometers>,
+) -> Result<SensorsConfig, Diagnostic> {
+    let calibration = file.calibration.as_ref().map(CalibrationTable::check);
+    let sensors = SensorsConfig {
+        calibration: calibration.transpose()?,
+        tachometers,
+        ..file.sensors
+    };
+    sensors.check().map_err(|error| translate(&error))?;
+    Ok(sensors)
+}
+
 /// Radial, m.
 fn stator_gap(table: Option<&StatorTable>) -> Result<Option<f64>, Diagnostic> {
     let gap = |it: &StatorTable| Keys("stator").between("gap_mm", it.gap_mm, limits::CLEARANCE_MM);
     Ok(table.map(gap).transpose()?.map(|gap| MILLI * gap))
+}
+
+/// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
+/// that is accurate.
+pub(super) fn step_in_contact(scene: &Scene, given: bool) -> Result<f64, Diagnostic> {
+    let compliance = scales::compliance(scene).map_err(|error| translate(&error))?;
+    let step = scene.model.step;
+    if !given {
+        return Ok(step / (step / compliance.accurate_step()).ceil());
+    }
+    let longest = compliance.longest_step();
+    if step > longest {
+        let [longest, step] = [longest, step].map(|it| Number(it / MICRO));
+        let rule = format!(
+            "step_us must be no more than {longest:.4}, the limit of stability 2/omega_c of this contact, is {step}"
+        );
+        return Err(Diagnostic::new("model", "step_us", rule));
+    }
+    Ok(step)
 }
 
 /// Of fidelity `coupled`: a whole part of a sample that follows the fastest motion and short bounces, as far as
@@ -121,10 +151,8 @@ const USUAL_RATE: f64 = 20_000.0;
 fn run(table: &RunTable) -> Result<Run, Diagnostic> {
     let duration = RUN.above_zero("duration_s", table.duration_s)?;
     if duration > 86_400.0 {
-        let rule = format!(
-            "duration_s must be no more than 86400, is {}",
-            Number(duration)
-        );
+        let duration = Number(duration);
+        let rule = format!("duration_s must be no more than 86400, is {duration}");
         return Err(RUN.broken("duration_s", rule));
     }
     let gravity = gravity(table.gravity_m_s2.unwrap_or(STANDARD_GRAVITY))?;
@@ -132,14 +160,12 @@ fn run(table: &RunTable) -> Result<Run, Diagnostic> {
     let inclination = RUN.between("inclination_deg", inclination, limits::INCLINATION_DEG)?;
     let rate = table.sample_rate_hz.unwrap_or(USUAL_RATE);
     let across = gravity * inclination.to_radians().cos();
+    // A vertical axis leaves rounding only.
+    let pulls = across >= limits::LEAST_GRAVITY_M_S2;
+    let gravity = if pulls { across } else { 0.0 };
     Ok(Run {
         duration,
-        // A vertical axis leaves rounding only.
-        gravity: if across < limits::LEAST_GRAVITY_M_S2 {
-            0.0
-        } else {
-            across
-        },
+        gravity,
         sample_rate: RUN.between("sample_rate_hz", rate, 100.0..=200_000.0)?,
         seed: table.seed.unwrap_or(1),
     })
@@ -149,11 +175,8 @@ fn run(table: &RunTable) -> Result<Run, Diagnostic> {
 pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
     let gravity = RUN.zero_or_more("gravity_m_s2", given)?;
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
-        let rule = format!(
-            "gravity_m_s2 must be 0, or {} or more, is {}",
-            Number(limits::LEAST_GRAVITY_M_S2),
-            Number(gravity)
-        );
+        let [least, is] = [limits::LEAST_GRAVITY_M_S2, gravity].map(Number);
+        let rule = format!("gravity_m_s2 must be 0, or {least} or more, is {is}");
         return Err(RUN.broken("gravity_m_s2", rule));
     }
     RUN.between("gravity_m_s2", gravity, limits::GRAVITY_M_S2)
@@ -240,82 +263,4 @@ fn two_plane(
     }
     two_plane.check_start(start)?;
     Ok(Some(two_plane))
-}
-
-fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
-    const KEYS: Keys = Keys("model");
-    let rung = KEYS.named_or("rung", &table.rung, needed, &Fidelity::ALL)?;
-    let parts = match rung {
-        Fidelity::Support => "[support] or [ball_bearing]",
-        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
-        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
-    };
-    // The coupled rung has all that rigid rings have.
-    let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
-    let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
-    if less {
-        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping, limit or times: leave them out, or rung";
-        return Err(KEYS.broken("rung", rule));
-    }
-    if !parts.is_empty() && needed != rung && !more {
-        let rule = format!("rung = \"{}\" needs {parts}", rung);
-        return Err(KEYS.broken("rung", rule));
-    }
-    let schemes = rung.schemes();
-    let scheme = KEYS.named_or("scheme", &table.scheme, schemes[0], schemes)?;
-    let (double, both) = (Precision::F64, &Precision::ALL);
-    let precision = KEYS.named_or("precision", &table.precision, double, both)?;
-    let math = KEYS.named_or("math", &table.math, Math::Libm, &Math::ALL)?;
-    if !rung.maths(precision).contains(&math) {
-        let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
-        return Err(KEYS.broken("math", rule));
-    }
-    let step = match table.step_us {
-        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
-        None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
-    };
-    let cutoff = match table.cutoff_mm_s {
-        None => 0.0,
-        Some(_) if rung != Fidelity::Rigid => {
-            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
-            return Err(KEYS.broken("cutoff_mm_s", rule));
-        }
-        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
-    };
-    Ok(Model {
-        rung,
-        scheme,
-        precision,
-        math,
-        step,
-        cutoff,
-        left_out: LeftOut::default(),
-    })
-}
-
-fn sensors(
-    table: &SensorsTable,
-    calibration: Option<Calibration>,
-    tachometers: Option<Tachometers>,
-) -> Result<SensorsConfig, Diagnostic> {
-    let config = SensorsConfig {
-        planes: table.planes,
-        bits: table.bits,
-        range: MICRO * table.range_um,
-        noise: MICRO * table.noise_um,
-        bandwidth: table.bandwidth_hz,
-        mounting_angle: table.mounting_deg.map(f64::to_radians),
-        skew: table.skew_deg.map(f64::to_radians),
-        offset: table.offset_um.map(|offset| MICRO * offset),
-        gain_error: table.gain_error_percent.map(|error| error / 100.0),
-        nonlinearity: table.nonlinearity_percent / 100.0,
-        runout: MICRO * table.runout_um,
-        runout_harmonic: table.runout_harmonic,
-        speed: table.speed,
-        levitation_signal: table.levitation_signal,
-        calibration,
-        tachometers,
-    };
-    config.check().map_err(|error| translate(&error))?;
-    Ok(config)
 }

@@ -9,9 +9,13 @@ use super::base::BaseTable;
 use super::calibration::CalibrationTable;
 use super::diagnostic;
 use super::faults::FaultTable;
-use super::list;
 use super::magnet::MagnetTable;
+use super::materials::MaterialsTable;
 use super::mode::ModeTable;
+use super::model::ModelTable;
+use super::outputs::OutputsTable;
+use super::rule::exactly;
+use super::sensors::SensorsConfig;
 use super::support::{BallBearingTable, SupportTable};
 use super::two_plane::{RingTable, TwoPlaneTable};
 use touchdown_base::input_error::InputError;
@@ -66,7 +70,7 @@ pub(super) struct SceneFile {
     pub outputs: Option<OutputsTable>,
     pub materials: Option<MaterialsTable>,
     #[serde(default)]
-    pub sensors: SensorsTable,
+    pub sensors: SensorsConfig,
     pub calibration: Option<CalibrationTable>,
     #[serde(default)]
     pub fault: Vec<FaultTable>,
@@ -82,7 +86,7 @@ pub(super) struct SceneFile {
 pub(super) struct GuardTable {
     pub alert: f32,
     pub danger: f32,
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     pub zones: [f64; 3],
 }
 
@@ -149,98 +153,4 @@ pub(super) struct RunTable {
     pub inclination_deg: f64,
     pub sample_rate_hz: Option<f64>,
     pub seed: Option<u64>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ModelTable {
-    pub rung: Option<String>,
-    pub scheme: Option<String>,
-    pub math: Option<String>,
-    pub precision: Option<String>,
-    pub step_us: Option<f64>,
-    pub cutoff_mm_s: Option<f64>,
-    pub contact: Option<String>,
-    pub fidelity: Option<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct OutputsTable {
-    pub regime: Option<bool>,
-    pub impact_time_us: Option<f64>,
-    pub impact_speed_percent: Option<f64>,
-    pub phases_us: Option<f64>,
-    pub whirl_load_percent: Option<f64>,
-    pub peak_force_percent: Option<f64>,
-    pub contact_time_percent: Option<f64>,
-}
-
-/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct MaterialsTable {
-    pub rotor_modulus_gpa: f64,
-    pub rotor_poisson: f64,
-    pub retainer_modulus_gpa: f64,
-    pub retainer_poisson: f64,
-    pub contact: Option<String>,
-    pub length_mm: Option<f64>,
-}
-
-impl Default for MaterialsTable {
-    fn default() -> Self {
-        Self {
-            rotor_modulus_gpa: 210.0,
-            rotor_poisson: 0.3,
-            retainer_modulus_gpa: 210.0,
-            retainer_poisson: 0.3,
-            contact: None,
-            length_mm: None,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct SensorsTable {
-    pub planes: u8,
-    pub bits: u32,
-    pub range_um: f64,
-    pub noise_um: f64,
-    pub bandwidth_hz: Option<f64>,
-    #[serde(deserialize_with = "list::exactly")]
-    pub mounting_deg: [f64; 2],
-    #[serde(deserialize_with = "list::exactly")]
-    pub skew_deg: [f64; 2],
-    #[serde(deserialize_with = "list::exactly")]
-    pub offset_um: [f64; 4],
-    #[serde(deserialize_with = "list::exactly")]
-    pub gain_error_percent: [f64; 4],
-    pub nonlinearity_percent: f64,
-    pub runout_um: f64,
-    pub runout_harmonic: u32,
-    pub speed: bool,
-    pub levitation_signal: bool,
-}
-
-impl Default for SensorsTable {
-    fn default() -> Self {
-        Self {
-            planes: 2,
-            bits: 12,
-            range_um: 1000.0,
-            noise_um: 1.0,
-            bandwidth_hz: None,
-            mounting_deg: [0.0; 2],
-            skew_deg: [0.0; 2],
-            offset_um: [0.0; 4],
-            gain_error_percent: [0.0; 4],
-            nonlinearity_percent: 0.0,
-            runout_um: 0.0,
-            runout_harmonic: 1,
-            speed: false,
-            levitation_signal: false,
-        }
-    }
 }

@@ -1,17 +1,14 @@
 //! A scene: the machine, how it starts, how long it runs, what is modelled and what is measured.
 
-mod auto;
 mod base;
 mod builtin;
 pub mod calibration;
 pub mod check;
-mod contact;
 pub mod diagnostic;
 pub mod elastic;
 mod faults;
 pub mod file;
 pub mod limits;
-pub mod list;
 pub mod machine;
 mod magnet;
 mod materials;
@@ -33,7 +30,7 @@ pub use materials::{CompliantWall, Contact, Materials};
 pub use mode::{MODES, Mode};
 pub use model::{Fidelity, LeftOut, Math, Model, Precision, Removable, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
-pub use support::{BallBearing, Stop, Support};
+pub use support::{BallBearing, Stop, Support, axes};
 pub use two_plane::{RINGS, Ring, TwoPlane};
 
 use std::borrow::Cow;
@@ -145,17 +142,15 @@ impl Scene {
         if path.exists() && !(path.is_dir() && built_in.is_some()) {
             return InputError::read(path, LARGEST_TOML).map(Cow::Owned);
         }
-        match built_in {
-            Some(scene) => Ok(Cow::Borrowed(scene.text)),
-            None => {
+        built_in
+            .map(|scene| Cow::Borrowed(scene.text))
+            .ok_or_else(|| {
                 let names: Vec<_> = BUILT_IN.iter().map(|scene| scene.name).collect();
-                let rule = format!(
-                    "no such file, and no built-in scene of this name; built in: {}",
-                    names.join(", ")
-                );
-                Err(InputError::of_file(name, rule))
-            }
-        }
+                let names = names.join(", ");
+                let rule =
+                    format!("no such file, and no built-in scene of this name; built in: {names}");
+                InputError::of_file(name, rule)
+            })
     }
 
     /// Reads the scene `text`; errors name it `name`.
@@ -169,49 +164,40 @@ impl Scene {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.retainer.clearance > self.sensors.range {
+            let (clearance, range) = (self.retainer.clearance * 1e3, self.sensors.range * 1e6);
             warnings.push(format!(
-                "{}: clearance_mm is {}, beyond the sensors' range of {} um: they saturate before \
-                 the rotor touches",
-                self.name,
-                self.retainer.clearance * 1e3,
-                self.sensors.range * 1e6
+                "clearance_mm is {clearance}, beyond the sensors' range of {range} um: they saturate before the rotor touches"
             ));
         }
         for part in parts::parts(self) {
             if part.asked && !part.modelled {
-                warnings.push(format!(
-                    "{}: {}: {}, the scene has rung {}",
-                    self.name, part.name, part.reason, self.model.rung
-                ));
+                let (name, reason, rung) = (part.name, part.reason, self.model.rung);
+                warnings.push(format!("{name}: {reason}, the scene has rung {rung}"));
             }
         }
-        let tilt = self.two_plane.as_ref().and_then(TwoPlane::tilt_warning);
-        warnings.extend(tilt.map(|it| format!("{}: {it}", self.name)));
+        warnings.extend(self.two_plane.as_ref().and_then(TwoPlane::tilt_warning));
         warnings.extend(self.step_warning());
-        warnings
+        let told = warnings.iter().map(|it| format!("{}: {it}", self.name));
+        told.collect()
     }
 
     /// The longest step that follows all that the model moves, s, what sets it, and what comes of longer ones; none where
     /// any step does.
     fn longest_step(&self) -> Option<(f64, &'static str, &'static str)> {
+        let in_contact = |limit| (limit, "T_c/25", "forces and contact times are inaccurate");
         match self.model.rung {
-            Fidelity::Hertz => {
-                let limit = compliance(self).ok()?.accurate_step();
-                Some((limit, "T_c/25", "forces and contact times are inaccurate"))
-            }
+            Fidelity::Hertz => Some(in_contact(compliance(self).ok()?.accurate_step())),
             Fidelity::Coupled => {
                 let fastest = self.two_plane.as_ref()?.fastest(self.rotor.spin);
                 let limit = 5.0 * limits::ANGLE_OF_STEP / fastest;
                 let accurate = scales::accurate_step(self);
-                if accurate < limit {
-                    let then = "forces and contact times are inaccurate";
-                    return Some((accurate, "T_c/25", then));
-                }
-                Some((
-                    limit,
-                    "half a radian of the fastest motion",
-                    "it is not followed",
-                ))
+                let of = "half a radian of the fastest motion";
+                let followed = (limit, of, "it is not followed");
+                Some(if accurate < limit {
+                    in_contact(accurate)
+                } else {
+                    followed
+                })
             }
             _ => None,
         }
@@ -226,14 +212,9 @@ impl Scene {
     fn step_warning(&self) -> Option<String> {
         let step = self.model.step;
         let (longest, of, then) = self.longest_step()?;
-        (step > longest).then(|| {
-            format!(
-                "{}: step_us is {}, above {of} = {:.4} us: {then}",
-                self.name,
-                (step * 1e12).round() * 1e-6,
-                longest * 1e6
-            )
-        })
+        let (given, longest_us) = ((step * 1e12).round() * 1e-6, longest * 1e6);
+        let rule = format!("step_us is {given}, above {of} = {longest_us:.4} us: {then}");
+        (step > longest).then_some(rule)
     }
 
     /// What the monitor is told of this scene.

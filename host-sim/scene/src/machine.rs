@@ -12,23 +12,16 @@ pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
     let mass = KEYS.within("mass_kg", table.mass_kg, limits::MASS_KG)?;
     let radius = MILLI * KEYS.within("radius_mm", table.radius_mm, limits::RADIUS_MM)?;
     let solid = 0.5 * mass * radius * radius;
-    let polar_inertia = match table.polar_inertia_kg_m2 {
-        Some(inertia) => {
-            let inertia = KEYS.above_zero("polar_inertia_kg_m2", inertia)?;
-            let ratio = inertia / solid;
-            if !limits::INERTIA_RATIO.contains(&ratio) {
-                let (low, high) = limits::INERTIA_RATIO.into_inner();
-                let rule = format!(
-                    "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder \
-                     ({solid:.3e}), is {}",
-                    Number(inertia)
-                );
-                return Err(KEYS.broken("polar_inertia_kg_m2", rule));
-            }
-            inertia
-        }
-        None => solid,
-    };
+    let polar_inertia = table.polar_inertia_kg_m2.unwrap_or(solid);
+    KEYS.above_zero("polar_inertia_kg_m2", polar_inertia)?;
+    if !limits::INERTIA_RATIO.contains(&(polar_inertia / solid)) {
+        let (low, high) = limits::INERTIA_RATIO.into_inner();
+        let is = Number(polar_inertia);
+        let rule = format!(
+            "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder ({solid:.3e}), is {is}"
+        );
+        return Err(KEYS.broken("polar_inertia_kg_m2", rule));
+    }
     let speed = KEYS.between("speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
     Ok(Rotor {
         mass,
@@ -63,9 +56,8 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
         ("tangential_mm_s", table.tangential_mm_s),
     ];
     let first = |keys: &[(&'static str, Option<f64>)]| {
-        keys.iter()
-            .find(|(_, value)| value.is_some())
-            .map(|(key, _)| *key)
+        let given = keys.iter().find(|(_, value)| value.is_some());
+        given.map(|(key, _)| *key)
     };
     if let Some(wall_key) = first(&wall) {
         if let Some(free_key) = first(&free) {
@@ -90,10 +82,9 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
     let distance = x.hypot(y);
     if distance > clearance * (1.0 + ON_THE_WALL) {
         let key = if x.abs() > y.abs() { "x_mm" } else { "y_mm" };
+        let [distance, clearance] = [distance, clearance].map(|it| Number(it / MILLI));
         let rule = format!(
-            "the start is outside the gap: {} mm from the centre, the clearance is {} mm",
-            Number(distance / MILLI),
-            Number(clearance / MILLI)
+            "the start is outside the gap: {distance} mm from the centre, the clearance is {clearance} mm"
         );
         return Err(KEYS.broken(key, rule));
     }

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use super::diagnostic::Diagnostic;
-use super::rule::{Keys, MILLI};
-use super::{limits, list};
+use super::limits;
+use super::rule::{Keys, MILLI, exactly};
 
 /// Most magnets: two planes of them, as they are left and as they come back.
 const MAGNETS: usize = 4;
@@ -34,7 +34,7 @@ pub(super) struct MagnetTable {
     stiffness_n_m: f64,
     #[serde(default)]
     damping_n_s_m: f64,
-    #[serde(default, deserialize_with = "list::exactly")]
+    #[serde(default, deserialize_with = "exactly")]
     force_n: [f64; 2],
     limit_n: Option<f64>,
     from_s: Option<f64>,
@@ -49,14 +49,12 @@ impl MagnetTable {
         if stiffness != 0.0 {
             KEYS.between("stiffness_n_m", stiffness.abs(), limits::STIFFNESS_N_M)?;
         }
-        for force in self.force_n {
-            KEYS.between("force_n", force, limits::FORCE_N)?;
-        }
+        let force = KEYS.each("force_n", self.force_n, limits::FORCE_N)?;
         let limit = |it| KEYS.within("limit_n", it, limits::LIMIT_N);
         Ok(Magnet {
             place: MILLI * KEYS.between("z_mm", self.z_mm, limits::PLACE_MM)?,
             stiffness,
-            force: self.force_n,
+            force,
             limit: self.limit_n.map(limit).transpose()?,
             on: self.on()?,
             damping: KEYS.between("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,

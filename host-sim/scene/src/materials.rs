@@ -2,7 +2,12 @@
 
 use std::f64::consts::PI;
 
-use touchdown_models::Materials as Elastic;
+use serde::Deserialize;
+use touchdown_models::{CompliantConfig, Materials as Elastic};
+
+use super::diagnostic::Diagnostic;
+use super::limits;
+use super::rule::{Keys, MILLI};
 
 /// How rotor and retainer touch.
 #[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
@@ -22,17 +27,11 @@ pub enum Contact {
     },
 }
 
-/// A wall that gives way: its force over depth, in place of restitution. The balls give way with it.
+/// A wall that gives way, in place of restitution. The balls give way with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompliantWall {
-    /// The shape.
-    pub contact: Contact,
-    /// K: force is K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line; N/m^1.5 or N/m.
-    pub stiffness: f64,
-    /// N/m.
-    pub balls: Option<f64>,
-    /// Speed of entry below which it does not scale the damping, m/s.
-    pub slowest: f64,
+    /// Its force over depth: K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line.
+    pub law: CompliantConfig<f64>,
     /// Duration of the fastest impact, s.
     pub contact_time: f64,
 }
@@ -64,6 +63,75 @@ impl Materials {
             }
         })
     }
+}
+
+/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct MaterialsTable {
+    pub rotor_modulus_gpa: f64,
+    pub rotor_poisson: f64,
+    pub retainer_modulus_gpa: f64,
+    pub retainer_poisson: f64,
+    pub contact: Option<String>,
+    pub length_mm: Option<f64>,
+}
+
+impl Default for MaterialsTable {
+    fn default() -> Self {
+        Self {
+            rotor_modulus_gpa: 210.0,
+            rotor_poisson: 0.3,
+            retainer_modulus_gpa: 210.0,
+            retainer_poisson: 0.3,
+            contact: None,
+            length_mm: None,
+        }
+    }
+}
+
+const GIGA: f64 = 1e9;
+
+/// The materials, and how they touch.
+pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Diagnostic> {
+    const KEYS: Keys = Keys("materials");
+    let steel = MaterialsTable::default();
+    let table = given.unwrap_or(&steel);
+    let modulus = |key, value| {
+        let value = KEYS.within(key, value, limits::MODULUS_GPA);
+        value.map(|value| GIGA * value)
+    };
+    let poisson = |key, value| KEYS.between(key, value, limits::POISSON);
+    let names = ["point", "line", "line-power"];
+    let contact = KEYS.named_or("contact", &table.contact, names[0], &names)?;
+    let contact = match (contact, table.length_mm) {
+        ("point", None) => Contact::Point,
+        ("point", Some(_)) => {
+            let rule = "length_mm is that of contact = \"line\"";
+            return Err(KEYS.broken("length_mm", rule));
+        }
+        (name, Some(length)) => {
+            let length = MILLI * KEYS.within("length_mm", length, limits::LENGTH_MM)?;
+            match name {
+                "line" => Contact::Line { length },
+                _ => Contact::LinePower { length },
+            }
+        }
+        (name, None) => {
+            let rule = format!("contact = \"{name}\" needs length_mm");
+            return Err(KEYS.broken("contact", rule));
+        }
+    };
+    Ok(Materials {
+        elastic: Elastic {
+            rotor_modulus: modulus("rotor_modulus_gpa", table.rotor_modulus_gpa)?,
+            rotor_poisson: poisson("rotor_poisson", table.rotor_poisson)?,
+            retainer_modulus: modulus("retainer_modulus_gpa", table.retainer_modulus_gpa)?,
+            retainer_poisson: poisson("retainer_poisson", table.retainer_poisson)?,
+        },
+        contact,
+        given: given.is_some(),
+    })
 }
 
 #[cfg(test)]

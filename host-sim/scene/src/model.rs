@@ -1,11 +1,15 @@
 //! What is modelled, and how it is computed.
 
-use serde::Serialize;
-use strum::VariantArray;
+use serde::{Deserialize, Serialize};
+use strum::{Display, IntoStaticStr, VariantArray};
+
+use super::diagnostic::Diagnostic;
+use super::rule::{Keys, MICRO, MILLI};
+use super::{Run, limits};
 
 /// Rung of the ladder of models.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
+    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr, VariantArray,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
@@ -25,9 +29,7 @@ pub enum Fidelity {
 }
 
 /// How a rung goes through time.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum Scheme {
@@ -43,9 +45,7 @@ pub enum Scheme {
 }
 
 /// Number format of the model.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum Precision {
@@ -56,9 +56,7 @@ pub enum Precision {
 }
 
 /// Where square roots, sines and the like come from.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, strum::Display, strum::IntoStaticStr,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Display, IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum Math {
@@ -91,7 +89,7 @@ pub struct Model {
 }
 
 /// A part of a machine that a model can do without.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr, VariantArray)]
 pub enum Removable {
     /// It bounds whirl.
     #[strum(serialize = "retainer's mass, spring, damper")]
@@ -156,14 +154,7 @@ impl Model {
 
 impl Fidelity {
     /// All, by rising cost.
-    pub const ALL: [Self; 6] = [
-        Self::Rigid,
-        Self::Moreau,
-        Self::Hertz,
-        Self::Support,
-        Self::TwoPlane,
-        Self::Coupled,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its schemes; the first is the default.
     pub fn schemes(self) -> &'static [Scheme] {
@@ -193,4 +184,68 @@ impl Math {
 impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    pub rung: Option<String>,
+    pub scheme: Option<String>,
+    pub math: Option<String>,
+    pub precision: Option<String>,
+    pub step_us: Option<f64>,
+    pub cutoff_mm_s: Option<f64>,
+    pub contact: Option<String>,
+    pub fidelity: Option<String>,
+}
+
+pub(super) fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<Model, Diagnostic> {
+    const KEYS: Keys = Keys("model");
+    let rung = KEYS.named_or("rung", &table.rung, needed, Fidelity::ALL)?;
+    let parts = match rung {
+        Fidelity::Support => "[support] or [ball_bearing]",
+        Fidelity::TwoPlane | Fidelity::Coupled => "[two_plane] and [[ring]]",
+        Fidelity::Rigid | Fidelity::Moreau | Fidelity::Hertz => "",
+    };
+    // The coupled rung has all that rigid rings have.
+    let more = (rung, needed) == (Fidelity::Coupled, Fidelity::TwoPlane);
+    let less = (rung, needed) == (Fidelity::TwoPlane, Fidelity::Coupled);
+    if less {
+        let rule = "rung = \"two-plane\" has no support, ball bearing, mode, base, compliant contact, magnet's damping, limit or times: leave them out, or rung";
+        return Err(KEYS.broken("rung", rule));
+    }
+    if !parts.is_empty() && needed != rung && !more {
+        let rule = format!("rung = \"{}\" needs {parts}", rung);
+        return Err(KEYS.broken("rung", rule));
+    }
+    let schemes = rung.schemes();
+    let scheme = KEYS.named_or("scheme", &table.scheme, schemes[0], schemes)?;
+    let (double, both) = (Precision::F64, &Precision::ALL);
+    let precision = KEYS.named_or("precision", &table.precision, double, both)?;
+    let math = KEYS.named_or("math", &table.math, Math::Libm, &Math::ALL)?;
+    if !rung.maths(precision).contains(&math) {
+        let rule = format!("math = \"{math}\" is not in rung = \"{rung}\" in {precision}");
+        return Err(KEYS.broken("math", rule));
+    }
+    let step = match table.step_us {
+        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
+        None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
+    };
+    let cutoff = match table.cutoff_mm_s {
+        None => 0.0,
+        Some(_) if rung != Fidelity::Rigid => {
+            let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
+            return Err(KEYS.broken("cutoff_mm_s", rule));
+        }
+        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+    };
+    Ok(Model {
+        rung,
+        scheme,
+        precision,
+        math,
+        step,
+        cutoff,
+        left_out: LeftOut::default(),
+    })
 }

@@ -1,6 +1,20 @@
-//! What a scene asks of its model, and how closely.
+//! `fidelity = "auto"` and `[outputs]`: what a scene asks of its model, and how closely.
 
-use super::model::{Fidelity, Math, Model, Precision, Scheme};
+use serde::Deserialize;
+use touchdown_base::plain::Number;
+
+use super::diagnostic::Diagnostic;
+use super::model::{Fidelity, Math, Model, ModelTable, Precision, Scheme};
+use super::rule::{Keys, MICRO};
+
+const OUTPUTS: Keys = Keys("outputs");
+const PERCENT: f64 = 1e-2;
+const REGIME: Request = Request {
+    output: Output::Regime,
+    tolerance: 0.0,
+};
+/// Of the phases' bounds, where a scene asks for nothing, s.
+const DEFAULT_PHASES: f64 = 100e-6;
 
 /// Something that a drop gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
@@ -108,4 +122,96 @@ fn short(value: f64) -> String {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
     }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OutputsTable {
+    pub regime: Option<bool>,
+    pub impact_time_us: Option<f64>,
+    pub impact_speed_percent: Option<f64>,
+    pub phases_us: Option<f64>,
+    pub whirl_load_percent: Option<f64>,
+    pub peak_force_percent: Option<f64>,
+    pub contact_time_percent: Option<f64>,
+}
+
+/// What the scene leaves open; `at_top` is the line of the scene, `model` has what `table` gives.
+pub(super) fn auto(
+    at_top: Option<&str>,
+    table: &ModelTable,
+    outputs: Option<&OutputsTable>,
+    model: &Model,
+) -> Result<Option<Auto>, Diagnostic> {
+    if at_top.and(table.fidelity.as_ref()).is_some() {
+        return Err(Keys("model").broken("fidelity", "fidelity is given twice"));
+    }
+    match (at_top.or(table.fidelity.as_deref()), outputs) {
+        (None, None) => Ok(None),
+        (None, Some(_)) => {
+            let rule = "[outputs] says what fidelity = \"auto\" has to give, but the scene has no such line";
+            Err(OUTPUTS.broken("", rule))
+        }
+        (Some("auto"), outputs) => Ok(Some(Auto {
+            asked: asked(outputs)?,
+            fixed: fixed(table, model),
+        })),
+        (Some(other), _) => {
+            let rule = format!("fidelity must be \"auto\", is \"{other}\"");
+            // At the top of the scene the key stands where a table's name would.
+            let table = at_top.map_or("model", |_| "fidelity");
+            Err(Diagnostic::new(table, "fidelity", rule))
+        }
+    }
+}
+
+fn fixed(table: &ModelTable, model: &Model) -> Fixed {
+    Fixed {
+        rung: table.rung.is_some().then_some(model.rung),
+        scheme: table.scheme.is_some().then_some(model.scheme),
+        precision: table.precision.is_some().then_some(model.precision),
+        math: table.math.is_some().then_some(model.math),
+        step: table.step_us.is_some().then_some(model.step),
+        cutoff: model.cutoff,
+    }
+}
+
+fn asked(table: Option<&OutputsTable>) -> Result<Vec<Request>, Diagnostic> {
+    use Output::{ContactTime, ImpactSpeed, ImpactTime, PeakForce, Phases, WhirlLoad};
+    let Some(it) = table else {
+        let phases = Request {
+            output: Phases,
+            tolerance: DEFAULT_PHASES,
+        };
+        return Ok(vec![REGIME, phases]);
+    };
+    let mut asked = Vec::new();
+    asked.extend((it.regime == Some(true)).then_some(REGIME));
+    for (key, given, output) in [
+        ("impact_time_us", it.impact_time_us, ImpactTime),
+        ("impact_speed_percent", it.impact_speed_percent, ImpactSpeed),
+        ("phases_us", it.phases_us, Phases),
+        ("whirl_load_percent", it.whirl_load_percent, WhirlLoad),
+        ("peak_force_percent", it.peak_force_percent, PeakForce),
+        ("contact_time_percent", it.contact_time_percent, ContactTime),
+    ] {
+        let Some(given) = given else { continue };
+        if given <= 0.0 {
+            let given = Number(given);
+            let rule = format!("{key} is a tolerance and must be above 0, is {given}");
+            return Err(OUTPUTS.broken(key, rule));
+        }
+        let unit = match output {
+            ImpactTime | Phases => MICRO,
+            _ => PERCENT,
+        };
+        asked.push(Request {
+            output,
+            tolerance: unit * given,
+        });
+    }
+    if asked.is_empty() {
+        return Err(OUTPUTS.broken("regime", "[outputs] asks for nothing"));
+    }
+    Ok(asked)
 }

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use serde::de::{Deserialize, Deserializer, Error};
 use touchdown_base::plain::Number;
 use touchdown_rotor::error::ConfigError;
 
@@ -55,6 +56,19 @@ impl Keys {
         let [low, high] = [*range.start(), *range.end()].map(Number);
         let rule = format!("{low} to {high}");
         self.holds(key, value, range.contains(&value), &rule)
+    }
+
+    /// Each of a list.
+    pub(crate) fn each<const N: usize>(
+        self,
+        key: &'static str,
+        values: [f64; N],
+        range: RangeInclusive<f64>,
+    ) -> Result<[f64; N], Diagnostic> {
+        for value in values {
+            self.between(key, value, range.clone())?;
+        }
+        Ok(values)
     }
 
     /// In a range that begins at 0 or above: what is on the wrong side of 0 is told so.
@@ -120,6 +134,21 @@ impl Keys {
         rows.map(|(row, table)| check(row, table).map_err(|flaw| flaw.in_row(row)))
             .collect()
     }
+}
+
+/// So many numbers. Of a longer list, an array alone would take the first and say nothing.
+pub fn exactly<'de, D: Deserializer<'de>, const N: usize>(list: D) -> Result<[f64; N], D::Error> {
+    let all = Vec::deserialize(list)?;
+    let there = all.len();
+    all.try_into()
+        .map_err(|_| D::Error::custom(format!("the list must have {N} numbers, has {there}")))
+}
+
+/// Likewise, of a key that may be left out.
+pub fn exactly_if_there<'de, D: Deserializer<'de>, const N: usize>(
+    list: D,
+) -> Result<Option<[f64; N]>, D::Error> {
+    exactly(list).map(Some)
 }
 
 /// A rule in the words of the configuration, in those of the file.

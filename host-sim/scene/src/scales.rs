@@ -1,7 +1,9 @@
 //! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
 
 use touchdown_base::machine::Start;
-use touchdown_models::{Compliance, HertzConfig, Line, LinePower, Point, Shape};
+use touchdown_models::{
+    Compliance, CompliantConfig, CompliantShape, HertzConfig, Line, LinePower, Point, Shape,
+};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
@@ -14,10 +16,29 @@ const SLOWEST: f64 = 1e-3;
 
 /// How stiff the scene's contact is.
 pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
+    pressed(scene, config(scene)).map(|(compliance, _)| compliance)
+}
+
+/// Depth by force over K and clearance, m.
+type Depth = fn(f64, f64) -> f64;
+
+/// How stiff the contact of another rotor in the scene is, and how deep it goes.
+fn pressed(
+    scene: &Scene,
+    rigid: RigidConfig<f64>,
+) -> Result<(Compliance<f64>, Depth), ConfigError> {
+    fn of<C: Shape<f64>>(
+        scene: &Scene,
+        rigid: RigidConfig<f64>,
+        shape: C,
+    ) -> Result<(Compliance<f64>, Depth), ConfigError> {
+        let config = compliant(scene, shape);
+        Ok((HertzConfig { rigid, ..config }.compliance()?, C::depth))
+    }
     match scene.materials.contact {
-        Contact::Point => compliant(scene, Point).compliance(),
-        Contact::Line { length } => compliant(scene, Line { length }).compliance(),
-        Contact::LinePower { length } => compliant(scene, LinePower { length }).compliance(),
+        Contact::Point => of(scene, rigid, Point),
+        Contact::Line { length } => of(scene, rigid, Line { length }),
+        Contact::LinePower { length } => of(scene, rigid, LinePower { length }),
     }
 }
 
@@ -31,14 +52,12 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
     let mode = machine.elastic_mode?;
     let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
     let rings = machine.rings.iter().map(|ring| ring.place / gyration);
-    let all = rings.filter_map(|zeta| match scene.materials.contact {
-        Contact::Point => Validity::try_new(&compliant(scene, Point), zeta, mode).ok(),
-        Contact::Line { length } => {
-            Validity::try_new(&compliant(scene, Line { length }), zeta, mode).ok()
-        }
-        Contact::LinePower { length } => {
-            Validity::try_new(&compliant(scene, LinePower { length }), zeta, mode).ok()
-        }
+    // An impact there meets 1/(1 + zeta^2) of the mass.
+    let all = rings.filter_map(|zeta| {
+        let mut there = config(scene);
+        there.mass /= 1.0 + zeta * zeta;
+        let (compliance, _) = pressed(scene, there).ok()?;
+        Some(Validity::new(1.0 / compliance.contact_time, mode))
     });
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
 }
@@ -50,34 +69,27 @@ pub(super) fn wall(
     machine: &TwoPlane,
     ring: &Ring,
 ) -> Result<CompliantWall, ConfigError> {
-    match scene.materials.contact {
-        Contact::Point => wall_of(scene, machine, ring, Point),
-        Contact::Line { length } => wall_of(scene, machine, ring, Line { length }),
-        Contact::LinePower { length } => wall_of(scene, machine, ring, LinePower { length }),
-    }
-}
-
-fn wall_of<C: Shape<f64>>(
-    scene: &Scene,
-    machine: &TwoPlane,
-    ring: &Ring,
-    shape: C,
-) -> Result<CompliantWall, ConfigError> {
-    let mut there = compliant(scene, shape);
+    let mut there = config(scene);
     let turned = ring.place * ring.place * scene.rotor.mass / machine.transverse_inertia;
-    there.rigid.mass /= 1.0 + turned;
-    there.rigid.radius = ring.radius;
-    there.rigid.clearance = ring.retainer.clearance;
-    let compliance = there.compliance()?;
+    there.mass /= 1.0 + turned;
+    there.radius = ring.radius;
+    there.clearance = ring.retainer.clearance;
+    let (compliance, depth) = pressed(scene, there)?;
     // A fall through the static compression: slower, the weight and not the impact decides.
     let weight = scene.rotor.mass * scene.run.gravity;
-    let settled = C::depth(weight / compliance.stiffness, ring.retainer.clearance);
+    let settled = depth(weight / compliance.stiffness, ring.retainer.clearance);
     let slowest = (2.0 * scene.run.gravity * settled).sqrt();
     Ok(CompliantWall {
-        contact: scene.materials.contact,
-        stiffness: compliance.stiffness,
-        balls: ring.ball_bearing.and_then(|it| it.stiffness),
-        slowest: slowest.max(SLOWEST * there.fastest),
+        law: CompliantConfig {
+            shape: match scene.materials.contact {
+                Contact::Point => CompliantShape::Point,
+                Contact::Line { .. } => CompliantShape::Line,
+                Contact::LinePower { .. } => CompliantShape::LinePower,
+            },
+            stiffness: compliance.stiffness,
+            balls: ring.ball_bearing.and_then(|it| it.stiffness),
+            slowest: slowest.max(SLOWEST * fastest_impact(scene)),
+        },
         contact_time: compliance.contact_time,
     })
 }

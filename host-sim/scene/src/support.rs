@@ -1,6 +1,7 @@
 //! `[support]` and `[ball_bearing]`: a retainer ring that gives way and one that turns.
 
 use serde::Deserialize;
+use touchdown_models::{MountConfig, RaceConfig, StopConfig};
 
 use super::diagnostic::Diagnostic;
 use super::limits;
@@ -13,76 +14,26 @@ const EDGE_ERROR: f64 = 0.004;
 const SPEED_WINDOW: f64 = 0.005;
 
 /// What the retainer ring stands on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Support {
-    /// Of the ring and all that moves with it, kg.
-    pub mass: f64,
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
-    /// Stiffness and damping along y, where they are others than along x.
-    pub vertical: Option<[f64; 2]>,
-    /// Dry friction of the ring on its seat, against its motion, N.
-    pub friction: f64,
-    /// What ends the ring's way, if anything does.
-    pub stop: Option<Stop>,
-}
+pub type Support = MountConfig<f64>;
 
 /// A stop of a ring, without friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
-    /// Of the ring to it, radial, m.
-    pub travel: f64,
-    /// Of a stop that gives way and gives all back, N/m; a rigid one gives nothing back.
-    pub stiffness: Option<f64>,
-}
-
-impl Stop {
-    /// One that does not give way.
-    pub const fn rigid(travel: f64) -> Self {
-        Self {
-            travel,
-            stiffness: None,
-        }
-    }
-
-    /// That of two rings that are one.
-    pub(super) fn with(self, other: Self) -> Self {
-        Self {
-            travel: self.travel.min(other.travel),
-            stiffness: self.stiffness.zip(other.stiffness).map(|(a, b)| a + b),
-        }
-    }
-}
+pub type Stop = StopConfig<f64>;
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallBearing {
-    /// Of the inner ring and what turns with it, kg m^2.
-    pub inertia: f64,
-    /// Drag that does not depend on the speed, N m.
-    pub dry_drag: f64,
-    /// N m s.
-    pub viscous_drag: f64,
-    /// Speed of the cage over that of the inner ring.
-    pub cage_ratio: f64,
-    /// J/K.
-    pub heat_capacity: f64,
-    /// To the surroundings, W/K.
-    pub heat_loss: f64,
+    /// Its inner ring, cage, drag and heat.
+    pub race: RaceConfig<f64>,
     /// Of balls and races under a load, N/m; rigid without.
     pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
     pub marks: [Option<u16>; 2],
 }
 
-impl Support {
-    /// Along x and along y: stiffness and damping.
-    pub fn axes(&self) -> [[f64; 2]; 2] {
-        let along_x = [self.stiffness, self.damping];
-        [along_x, self.vertical.unwrap_or(along_x)]
-    }
+/// Along x and along y: stiffness and damping.
+pub fn axes(mount: &Support) -> [[f64; 2]; 2] {
+    let along_x = [mount.stiffness, mount.damping];
+    [along_x, mount.vertical.unwrap_or(along_x)]
 }
 
 impl BallBearing {
@@ -90,7 +41,7 @@ impl BallBearing {
     pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
         (self.marks != [None; 2]).then_some(Tachometers {
             marks: self.marks,
-            cage_ratio: self.cage_ratio,
+            cage_ratio: self.race.cage_ratio,
             bore_radius,
             edge_error: EDGE_ERROR,
             window: SPEED_WINDOW,
@@ -199,17 +150,17 @@ impl BallBearingTable {
                 KEYS.between(key, f64::from(marks), limits::MARKS)?;
             }
         }
-        Ok(BallBearing {
-            inertia: KEYS.within(
-                "inner_ring_inertia_kg_m2",
-                inertia,
-                limits::RING_INERTIA_KG_M2,
-            )?,
+        let key = "inner_ring_inertia_kg_m2";
+        let race = RaceConfig {
+            inertia: KEYS.within(key, inertia, limits::RING_INERTIA_KG_M2)?,
             dry_drag: drag("dry_drag_n_m", self.dry_drag_n_m)?,
             viscous_drag: drag("viscous_drag_n_m_s", self.viscous_drag_n_m_s)?,
             cage_ratio: KEYS.between("cage_ratio", cage_ratio, limits::CAGE_RATIO)?,
             heat_capacity: KEYS.within("heat_capacity_j_k", capacity, limits::HEAT_CAPACITY_J_K)?,
             heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
+        };
+        Ok(BallBearing {
+            race,
             stiffness: self.stiffness_n_m.map(stiffness).transpose()?,
             marks: marks.map(|(_, marks)| marks),
         })

@@ -1,15 +1,16 @@
 //! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
+use touchdown_models::RaceConfig;
 
 use super::base::Base;
 use super::diagnostic::Diagnostic;
 use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
-use super::rule::{Keys, MILLI, ON_THE_WALL};
-use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
-use super::{Retainer, Rotor, Scene, Start, limits, list};
+use super::rule::{Keys, MILLI, ON_THE_WALL, exactly, exactly_if_there};
+use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable, axes};
+use super::{Retainer, Rotor, Scene, Start, limits};
 use touchdown_base::plain::Number;
 
 /// Most rings.
@@ -86,10 +87,13 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
         stiffness: a.stiffness + b.stiffness,
         damping: a.damping + b.damping,
         vertical: (a.vertical.is_some() || b.vertical.is_some())
-            .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
+            .then(|| [0, 1].map(|k| axes(&a)[1][k] + axes(&b)[1][k])),
         friction: a.friction + b.friction,
         stop: match (a.stop, b.stop) {
-            (Some(a), Some(b)) => Some(a.with(b)),
+            (Some(a), Some(b)) => Some(Stop {
+                travel: a.travel.min(b.travel),
+                stiffness: a.stiffness.zip(b.stiffness).map(|(a, b)| a + b),
+            }),
             (a, b) => a.or(b),
         },
     })
@@ -97,11 +101,14 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
 
 fn races(all: impl Iterator<Item = BallBearing>) -> Option<BallBearing> {
     all.reduce(|a, b| BallBearing {
-        inertia: a.inertia + b.inertia,
-        dry_drag: a.dry_drag + b.dry_drag,
-        viscous_drag: a.viscous_drag + b.viscous_drag,
-        heat_capacity: a.heat_capacity + b.heat_capacity,
-        heat_loss: a.heat_loss + b.heat_loss,
+        race: RaceConfig {
+            inertia: a.race.inertia + b.race.inertia,
+            dry_drag: a.race.dry_drag + b.race.dry_drag,
+            viscous_drag: a.race.viscous_drag + b.race.viscous_drag,
+            heat_capacity: a.race.heat_capacity + b.race.heat_capacity,
+            heat_loss: a.race.heat_loss + b.race.heat_loss,
+            ..a.race
+        },
         ..a
     })
 }
@@ -115,12 +122,9 @@ impl TwoPlane {
 
     /// Whether it has what only rigid rings and a rigid rotor lack.
     pub fn is_coupled(&self) -> bool {
-        let seats = self.rings.iter();
-        let mut seats = seats.map(|ring| {
-            ring.support.is_some() || ring.ball_bearing.is_some() || ring.wall.is_some()
-        });
-        let mut magnets = self.magnets.iter();
-        seats.any(|gives_way| gives_way)
+        let seated = |it: &Ring| it.support.is_some() || it.ball_bearing.is_some();
+        let (mut rings, mut magnets) = (self.rings.iter(), self.magnets.iter());
+        rings.any(|it| seated(it) || it.wall.is_some())
             || magnets.any(|it| it.damping > 0.0 || it.on.is_some() || it.limit.is_some())
             || !self.modes.is_empty()
             || self.base.is_some()
@@ -132,7 +136,7 @@ impl TwoPlane {
         let mounts = self.rings.iter().filter_map(|it| it.support);
         let mounts = mounts.flat_map(|it| {
             let stop = it.stop.and_then(|it| it.stiffness).unwrap_or(0.0);
-            it.axes().map(|[spring, damper]| {
+            axes(&it).map(|[spring, damper]| {
                 f64::max(((spring + stop) / it.mass).sqrt(), damper / it.mass)
             })
         });
@@ -199,12 +203,12 @@ pub(super) struct TwoPlaneTable {
     skew_mrad: f64,
     skew_deg: f64,
     elastic_mode_hz: Option<f64>,
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     tilt_mrad: [f64; 2],
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     tilt_rate_rad_s: [f64; 2],
     gravity_deg: f64,
-    #[serde(deserialize_with = "list::exactly_if_there")]
+    #[serde(deserialize_with = "exactly_if_there")]
     sensor_z_mm: Option<[f64; 2]>,
 }
 
@@ -238,21 +242,11 @@ impl TwoPlaneTable {
         let sensors = self.sensors([lowest, ends.fold(f64::NEG_INFINITY, f64::max)])?;
         let mode = |it| KEYS.between("elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
         let elastic_mode = self.elastic_mode_hz.map(mode).transpose()?;
-        for (key, pair) in [
-            ("tilt_mrad", self.tilt_mrad),
-            ("tilt_rate_rad_s", self.tilt_rate_rad_s),
-        ] {
-            for value in pair {
-                KEYS.between(key, value, limits::TILT)?;
-            }
-        }
-        for (key, angle) in [
-            ("unbalance_deg", self.unbalance_deg),
-            ("skew_deg", self.skew_deg),
-            ("gravity_deg", self.gravity_deg),
-        ] {
-            KEYS.between(key, angle, limits::ANGLE_DEG)?;
-        }
+        KEYS.each("tilt_mrad", self.tilt_mrad, limits::TILT)?;
+        KEYS.each("tilt_rate_rad_s", self.tilt_rate_rad_s, limits::TILT)?;
+        KEYS.between("unbalance_deg", self.unbalance_deg, limits::ANGLE_DEG)?;
+        KEYS.between("skew_deg", self.skew_deg, limits::ANGLE_DEG)?;
+        KEYS.between("gravity_deg", self.gravity_deg, limits::ANGLE_DEG)?;
         let unbalance = self.unbalance_g_mm;
         let unbalance = KEYS.between("unbalance_g_mm", unbalance, limits::UNBALANCE_G_MM)?;
         let skew = KEYS.between("skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
@@ -277,9 +271,7 @@ impl TwoPlaneTable {
         let Some(places) = self.sensor_z_mm else {
             return Ok(ends);
         };
-        for place in places {
-            KEYS.between("sensor_z_mm", place, limits::PLACE_MM)?;
-        }
+        let places = KEYS.each("sensor_z_mm", places, limits::PLACE_MM)?;
         Ok(places.map(|place| MILLI * place))
     }
 
@@ -293,13 +285,12 @@ impl TwoPlaneTable {
                 let square = rotor.radius * rotor.radius / 4.0 + length * length / 12.0;
                 (rotor.mass * square, "rotor_length_mm")
             }
-            (given, _) => {
-                let both = given.is_some();
-                let rule = if both {
-                    "transverse_inertia_kg_m2 or rotor_length_mm: give one"
-                } else {
-                    "transverse_inertia_kg_m2 or rotor_length_mm must be given"
-                };
+            (Some(_), Some(_)) => {
+                let rule = "transverse_inertia_kg_m2 or rotor_length_mm: give one";
+                return Err(KEYS.broken(key, rule));
+            }
+            (None, None) => {
+                let rule = "transverse_inertia_kg_m2 or rotor_length_mm must be given";
                 return Err(KEYS.broken(key, rule));
             }
         };
@@ -321,12 +312,10 @@ fn all_rings(
     retainer: &Retainer,
     tables: &[RingTable],
 ) -> Result<Vec<Ring>, Diagnostic> {
-    if tables.is_empty() || tables.len() > RINGS {
-        let rule = format!(
-            "[[ring]] must stand 1 to {RINGS} times, stands {} times",
-            tables.len()
-        );
-        let keys = if tables.is_empty() { KEYS } else { RING };
+    let count = tables.len();
+    if !(1..=RINGS).contains(&count) {
+        let rule = format!("[[ring]] must stand 1 to {RINGS} times, stands {count} times");
+        let keys = if count == 0 { KEYS } else { RING };
         return Err(keys.broken("z_mm", rule));
     }
     RING.rows("z_mm", tables, RINGS, |row, table| {

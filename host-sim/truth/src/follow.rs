@@ -198,9 +198,9 @@ fn coupled(scene: &Scene) -> CoupledReference {
 
 fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     Race {
-        inertia: bearing.inertia,
-        dry_drag: bearing.dry_drag,
-        viscous_drag: bearing.viscous_drag,
+        inertia: bearing.race.inertia,
+        dry_drag: bearing.race.dry_drag,
+        viscous_drag: bearing.race.viscous_drag,
     }
 }
 
@@ -214,9 +214,13 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         mount: it.support,
         race: it.ball_bearing.as_ref().map(race),
         press: it.wall.map(|wall| Press {
-            balls: wall.balls,
-            slowest: wall.slowest,
-            ..press(scene, [it.radius, it.retainer.clearance], wall.stiffness)
+            balls: wall.law.balls,
+            slowest: wall.law.slowest,
+            ..press(
+                scene,
+                [it.radius, it.retainer.clearance],
+                wall.law.stiffness,
+            )
         }),
     };
     let bending = |mode: &touchdown_scene::Mode| Bending {

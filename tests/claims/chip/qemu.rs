@@ -7,8 +7,7 @@ use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
 use touchdown_core::sensing::SensingConfig;
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_run::emulator::{Emulator, EmulatorError};
-use touchdown_run::monitor_output::MonitorOutput;
-use touchdown_run::procedure::Procedure;
+use touchdown_run::controller_trace::{MonitorOutput, Procedure};
 use touchdown_tests::monitor_run;
 
 const SAMPLES: u64 = 20_000;

@@ -20,7 +20,7 @@ use touchdown_protocol::controller::{Busy, Cause, Fault, Faults, Mode, Outputs};
 use touchdown_protocol::link::{Decoder, Nonce, Refusal, Reply, Request, State, encode, mac};
 use touchdown_protocol::wire::{Incoming, ReplayHead, Switching, encode_sample};
 use touchdown_run::emulator::{Emulator, Session, built, replay_head};
-use touchdown_run::procedure::Procedure;
+use touchdown_run::controller_trace::Procedure;
 use touchdown_run::target::Target;
 use touchdown_tests::controller::{CLEARANCE, settings};
 

@@ -13,7 +13,7 @@ use touchdown_core::health::{Condition, FaultKind};
 use touchdown_core::sample::Sample;
 use touchdown_run::drop;
 use touchdown_run::matching::match_events;
-use touchdown_run::monitor_output::MonitorOutput;
+use touchdown_run::controller_trace::MonitorOutput;
 use touchdown_run::outcome::{Detection, Outcome};
 use touchdown_run::target::Target;
 use touchdown_scene::sensors::{Failing, Faults, Motion, SensorFault, Sensors};

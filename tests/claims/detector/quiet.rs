@@ -3,7 +3,7 @@
 use touchdown_core::event::{EventKind, Level, Notice};
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::severity::Severity;
-use touchdown_run::monitor_output::MonitorOutput;
+use touchdown_run::controller_trace::MonitorOutput;
 use touchdown_scene::Scene;
 use touchdown_scene::sensors::{Motion, Sensors};
 use touchdown_tests::monitor_run;

@@ -257,7 +257,7 @@ fn those_on_lines_are_too() {
 #[test]
 fn those_with_balls_are_too() {
     for (more, least) in [("", 25), (LINE, 15)] {
-        let balls = |scene: &Scene| scene.rings().iter().any(|it| it.wall.is_some_and(|wall| wall.balls.is_some()));
+        let balls = |scene: &Scene| scene.rings().iter().any(|it| it.wall.is_some_and(|wall| wall.law.balls.is_some()));
         let mut compared = pressed(0..288, more, balls);
         let median = compared.order();
         assert!(compared.seen > least, "{}", compared.seen);

@@ -15,9 +15,9 @@ use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
 use touchdown_scene::machine::{retainer, rotor};
+use touchdown_scene::machine_config;
 use touchdown_scene::names::channel_name;
-use touchdown_scene::rule::{MICRO, MILLI, RPM};
-use touchdown_scene::{list, machine_config};
+use touchdown_scene::rule::{MICRO, MILLI, RPM, exactly};
 
 /// Digits that tell every f32 from its neighbours.
 const DIGITS: usize = 9;
@@ -56,7 +56,7 @@ struct SensorsTable {
     resolution_um: f64,
     zero_count: f64,
     full_scale: u16,
-    #[serde(deserialize_with = "list::exactly")]
+    #[serde(deserialize_with = "exactly")]
     mounting_deg: [f64; PLANES],
     #[serde(skip_serializing_if = "Option::is_none")]
     pulses_per_turn: Option<u16>,

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::extreme::free;
 use touchdown_base::input_error::InputError;
+use touchdown_models::RaceConfig;
 use touchdown_scene::{BallBearing, Model, Scene, Stop, Support};
 
 /// Longest part of a scene, s.
@@ -53,7 +54,7 @@ const EXTREMES: [(&str, Change); 20] = [
     ("inner ring held by drag", |s| {
         turning(s, 3e-5);
         if let Some(bearing) = &mut s.ball_bearing {
-            bearing.dry_drag = 1e3;
+            bearing.race.dry_drag = 1e3;
         }
     }),
 ];
@@ -74,12 +75,14 @@ fn stopped(scene: &mut Scene, stiffness: Option<f64>) {
 fn turning(scene: &mut Scene, inertia: f64) {
     scene.support = None;
     scene.ball_bearing = Some(BallBearing {
-        inertia,
-        dry_drag: 0.005,
-        viscous_drag: 1e-5,
-        cage_ratio: 0.4,
-        heat_capacity: 50.0,
-        heat_loss: 0.5,
+        race: RaceConfig {
+            inertia,
+            dry_drag: 0.005,
+            viscous_drag: 1e-5,
+            cage_ratio: 0.4,
+            heat_capacity: 50.0,
+            heat_loss: 0.5,
+        },
         stiffness: None,
         marks: [None; 2],
     });

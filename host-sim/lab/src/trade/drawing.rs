@@ -67,7 +67,7 @@ fn key(rows: &[Row]) -> Markup {
 /// Style classes of the points, and what they stand for: the rungs of the table, and the number formats.
 fn meanings(rows: &[Row]) -> Vec<(String, String)> {
     let shown = |rung: &Fidelity| rows.iter().any(|row| row.rung == *rung);
-    let rungs = Fidelity::ALL.into_iter().filter(shown);
+    let rungs = Fidelity::ALL.iter().copied().filter(shown);
     let rungs = rungs.map(|rung| (format!("rung-{rung} f32"), format!("rung {rung}")));
     let formats = Precision::ALL.map(|it| (format!("levitated {it}"), it.to_string()));
     rungs.chain(formats).collect()

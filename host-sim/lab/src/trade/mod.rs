@@ -22,8 +22,7 @@ use pace::Pace;
 use parts::Worth;
 use touchdown_base::history::History;
 use touchdown_base::progress;
-use touchdown_run::fidelity::combination::{self, with};
-use touchdown_run::fidelity::cost::first_second;
+use touchdown_run::fidelity::combination::{self, first_second, with};
 use touchdown_run::model;
 use touchdown_scene::{Fidelity, Math, Model, Precision, Scene, Scheme};
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{ModelEvent, Precision, Stepper};
 
-use touchdown_run::fidelity::cost;
+use touchdown_run::fidelity::combination::per_step;
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::Scene;
 
@@ -32,7 +32,7 @@ impl Pace {
         Self {
             ns_per_step,
             seconds_per_simulated_second: ns_per_step * 1e-9 / scene.model.step,
-            mcu_instructions_per_step: cost::per_step(scene),
+            mcu_instructions_per_step: per_step(scene),
         }
     }
 

@@ -75,8 +75,7 @@ fn fit(excerpts: &[Excerpt; 2], onset: f64, shift: f64, channels: usize) -> f64 
     let window = [onset - FITTED[0], onset + FITTED[1]];
     let error = |shift: f64| -> Option<f64> {
         let squares = squares(excerpts, shift, window);
-        let known: Option<Vec<f64>> = squares[..channels].iter().copied().collect();
-        known.map(|it| it.iter().sum())
+        squares[..channels].iter().copied().sum()
     };
     let steps = (FARTHEST / period).ceil() as i32;
     let tried = (-steps..=steps).filter_map(|step| {

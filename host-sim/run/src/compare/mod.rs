@@ -11,6 +11,7 @@ use touchdown_core::event::EventKind;
 pub use align::{Aligned, By};
 pub use table::table;
 
+use crate::matching::nearest_pairs;
 use crate::outcome::{DetectedEvent, Severity};
 use crate::replay::{self, Excerpt, Replay};
 use crate::target::Target;
@@ -146,15 +147,9 @@ fn pairs(told: &[Vec<&DetectedEvent>; 2], shift: f64, tolerance: Tolerance) -> V
             }
         }
     }
-    near.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let (mut of_a, mut of_b) = (vec![None; a.len()], vec![None; b.len()]);
-    for (_, i, j) in near {
-        if of_a[i].is_none() && of_b[j].is_none() {
-            (of_a[i], of_b[j]) = (Some(j), Some(i));
-        }
-    }
+    let (of_a, has_one) = nearest_pairs(near, a.len(), b.len());
     let both = (0..a.len()).map(|i| (Some(a[i]), of_a[i].map(|j| b[j])));
-    let alone = (0..b.len()).filter(|j| of_b[*j].is_none());
+    let alone = (0..b.len()).filter(|j| !has_one[*j]);
     let all = both.chain(alone.map(|j| (None, Some(b[j]))));
     let mut pairs: Vec<Pair> = all
         .filter_map(|(a, b)| pair(a, b, shift, tolerance))

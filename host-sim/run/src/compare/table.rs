@@ -1,6 +1,6 @@
 //! Two recordings for people.
 
-use super::{By, Comparison, Pair};
+use super::{By, Comparison, Pair, Tolerance};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
 
@@ -20,16 +20,11 @@ pub fn table(comparison: &Comparison, paint: Paint) -> String {
             aligned.shift_s
         ),
     };
-    let rms: Vec<_> = aligned
-        .waveform_rms_m
-        .iter()
-        .map(|it| format!("{:.2}", it * 1e6))
-        .collect();
+    let rms = aligned.waveform_rms_m.iter();
+    let rms: Vec<_> = rms.map(|it| format!("{:.2}", it * 1e6)).collect();
+    let rms = rms.join(", ");
     if !rms.is_empty() {
-        text += &format!(
-            "waveforms about the drop differ by {} um rms\n",
-            rms.join(", ")
-        );
+        text += &format!("waveforms about the drop differ by {rms} um rms\n");
     }
     let head = format!(
         "\n{:<15}{:>14}{:>14}{:>10}{:>10}{:>10}{:>9}",
@@ -39,19 +34,12 @@ pub fn table(comparison: &Comparison, paint: Paint) -> String {
     for pair in comparison.events.iter().take(LISTED) {
         text += &line(pair, paint);
     }
-    if comparison.events.len() > LISTED {
-        text += &format!(
-            "... {} more events, with --json\n",
-            comparison.events.len() - LISTED
-        );
+    if let more @ 1.. = comparison.events.len().saturating_sub(LISTED) {
+        text += &format!("... {more} more events, with --json\n");
     }
-    let regime = comparison.regimes.map(|it| it.map_or("none", <&str>::from));
-    let same = if regime[0] == regime[1] {
-        "the same"
-    } else {
-        "not the same"
-    };
-    text += &format!("\nregime: a {}, b {}: {same}\n", regime[0], regime[1]);
+    let [one, other] = comparison.regimes.map(|it| it.map_or("none", <&str>::from));
+    let not = if one == other { "" } else { "not " };
+    text += &format!("\nregime: a {one}, b {other}: {not}the same\n");
     let [one, other] = comparison.severity.map(|it| it.velocity_index);
     text += &format!("velocity index: a {one:.3}, b {other:.3}\n");
     let verdict = verdict(comparison);
@@ -63,12 +51,8 @@ pub fn table(comparison: &Comparison, paint: Paint) -> String {
 
 /// One line.
 pub fn verdict(comparison: &Comparison) -> String {
-    let tolerance = comparison.tolerance;
-    let limits = format!(
-        "{} ms and {} %",
-        tolerance.time_s * 1e3,
-        tolerance.speed * 100.0
-    );
+    let Tolerance { time_s, speed } = comparison.tolerance;
+    let limits = format!("{} ms and {} %", time_s * 1e3, speed * 100.0);
     match comparison.beyond {
         0 => format!("all within {limits}"),
         1 => format!("1 difference beyond {limits}"),

@@ -8,8 +8,7 @@ use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::Sample;
 use touchdown_protocol::wire::{self, Incoming, Record, ReplayHead, Switching};
 
-use crate::monitor_output::MonitorOutput;
-use crate::procedure::Procedure;
+use crate::controller_trace::{MonitorOutput, Procedure};
 
 /// Writes a replay file; how many samples it has.
 pub(super) fn write_replay(

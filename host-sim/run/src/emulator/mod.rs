@@ -10,9 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 use std::time::Duration;
 
-use crate::controller_trace::ControllerTrace;
-use crate::monitor_output::MonitorOutput;
-use crate::procedure::Procedure;
+use crate::controller_trace::{ControllerTrace, MonitorOutput, Procedure};
 use defmt_decoder::{DecodeError, Table};
 use touchdown_base::interrupt::TemporaryFolder;
 use touchdown_core::monitor::MonitorConfig;
@@ -100,9 +98,9 @@ impl Emulator {
         procedure: &Procedure,
         samples: impl Iterator<Item = Sample>,
     ) -> Result<(MonitorOutput, ControllerTrace), EmulatorError> {
-        let folder = TemporaryFolder::new().map_err(|e| EmulatorError::Io("make a folder", e))?;
+        let folder = TemporaryFolder::new().map_err(failed("make a folder"))?;
         let count = write_replay(&folder.path().join("replay"), config, procedure, samples)
-            .map_err(|e| EmulatorError::Io("write the replay file", e))?;
+            .map_err(failed("write the replay file"))?;
         let limit = START_LIMIT + Duration::from_millis(count * SAMPLE_LIMIT_MS);
         let mut session = self.open(folder.path())?;
         let (output, shown) = session.answer(limit)?;
@@ -138,7 +136,11 @@ impl Emulator {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, EmulatorError> {
-    fs::read(path).map_err(|e| EmulatorError::Io("read", e))
+    fs::read(path).map_err(failed("read"))
+}
+
+fn failed(what: &'static str) -> impl Fn(io::Error) -> EmulatorError + Copy {
+    move |error| EmulatorError::Io(what, error)
 }
 
 /// Where `cargo xtask firmware` puts an image.

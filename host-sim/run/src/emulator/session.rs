@@ -8,8 +8,10 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, read};
-use crate::monitor_output::MonitorOutput;
+use super::{
+    Emulator, EmulatorError, MACHINE, QEMU, START_LIMIT, TIME, decode_answer, failed, read,
+};
+use crate::controller_trace::MonitorOutput;
 use touchdown_base::interrupt::{Registered, spawn};
 use touchdown_files::link::Client;
 use touchdown_protocol::wire::Switching;
@@ -35,7 +37,6 @@ impl Emulator {
     /// Starts the image in `folder`, where there is a file or a pipe `replay`; `log` and `settings` are
     /// made where they are not there, and kept.
     pub fn open(&self, folder: &Path) -> Result<Session, EmulatorError> {
-        let failed = |what| move |e| EmulatorError::Io(what, e);
         let socket = TcpListener::bind("127.0.0.1:0").map_err(failed("open a socket"))?;
         let port = socket.local_addr().map_err(failed("open a socket"))?.port();
         let serial = format!("tcp:127.0.0.1:{port}");
@@ -76,7 +77,7 @@ impl Emulator {
                 .stderr(File::create(folder.join("err"))?);
             spawn(&mut command)
         };
-        let (child, registered) = started().map_err(|e| EmulatorError::Io("start QEMU", e))?;
+        let (child, registered) = started().map_err(failed("start QEMU"))?;
         Ok(Session {
             emulator: self.clone(),
             folder: folder.to_owned(),
@@ -89,7 +90,7 @@ impl Emulator {
 
 impl Session {
     fn accept(&mut self, socket: &TcpListener) -> Result<TcpStream, EmulatorError> {
-        let failed = |e| EmulatorError::Io("open the link", e);
+        let failed = failed("open the link");
         socket.set_nonblocking(true).map_err(failed)?;
         let start = Instant::now();
         loop {
@@ -152,15 +153,14 @@ impl Session {
 
     /// Talks over the link; once.
     pub fn client(&mut self) -> Result<Client, EmulatorError> {
-        let gone = || EmulatorError::Io("open the link", io::ErrorKind::NotConnected.into());
+        let gone = || failed("open the link")(io::ErrorKind::NotConnected.into());
         let line = self.line.take().ok_or_else(gone)?;
         Ok(Client::patient(Box::new(line)))
     }
 
     /// How it ended, if it has.
     pub fn ended(&mut self) -> Result<Option<ExitStatus>, EmulatorError> {
-        let status = self.child.try_wait();
-        status.map_err(|e| EmulatorError::Io("wait for QEMU", e))
+        self.child.try_wait().map_err(failed("wait for QEMU"))
     }
 
     /// Cuts its power; what it logged.

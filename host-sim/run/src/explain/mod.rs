@@ -1,9 +1,7 @@
 //! What a scene models, what it leaves out and why, and the numbers that decide how it goes.
 
-mod contact;
 mod model;
 pub mod numbers;
-mod sensors;
 
 use std::fmt::Write;
 
@@ -41,14 +39,14 @@ pub fn explanation(scene: &Scene) -> Explanation {
     let parts = parts(scene);
     let mut sections = vec![section("Model", model::model(scene))];
     if scene.model.rung == Fidelity::Hertz {
-        sections.push(section("Contact", contact::contact(scene)));
+        sections.push(section("Contact", model::contact(scene)));
     }
     sections.extend([
         section("Modelled", chosen(&parts, true)),
         section("Left out", chosen(&parts, false)),
         section("Scales", numbers::scales(scene)),
         section("Speeds and times", numbers::speeds(scene)),
-        section("Sensors", sensors::sensors(&scene.sensors, scene)),
+        section("Sensors", model::sensors(scene)),
     ]);
     Explanation {
         heading: scene.heading().to_owned(),

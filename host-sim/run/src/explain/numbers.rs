@@ -18,15 +18,13 @@ pub fn scales(scene: &Scene) -> Vec<Row> {
     ];
     if machine.gravity > 0.0 {
         let speed = (machine.gravity * clearance).sqrt();
-        rows.push((
-            "T = sqrt(rho0/g)",
-            millis((clearance / machine.gravity).sqrt()),
-        ));
-        rows.push(("V = sqrt(g rho0)", format!("{:.4} mm/s", speed * 1e3)));
-        rows.push((
-            "W0 = r spin/V",
-            format!("{:.2}", machine.radius * scene.rotor.spin / speed),
-        ));
+        let time = (clearance / machine.gravity).sqrt();
+        let surface = machine.radius * scene.rotor.spin / speed;
+        rows.extend([
+            ("T = sqrt(rho0/g)", millis(time)),
+            ("V = sqrt(g rho0)", format!("{:.4} mm/s", speed * 1e3)),
+            ("W0 = r spin/V", format!("{surface:.2}")),
+        ]);
     } else {
         rows.push(("T, V, W0", "none: no gravity".to_owned()));
     }
@@ -38,10 +36,8 @@ pub fn speeds(scene: &Scene) -> Vec<Row> {
     let machine = scene.machine();
     let (gravity, clearance, mu) = (machine.gravity, machine.clearance, machine.friction);
     if gravity == 0.0 {
-        return vec![(
-            "without gravity",
-            "flight is straight; any contact goes round".to_owned(),
-        )];
+        let how = "flight is straight; any contact goes round";
+        return vec![("without gravity", how.to_owned())];
     }
     let fall = (2.0 * clearance / gravity).sqrt();
     let hit = (2.0 * gravity * clearance).sqrt();
@@ -56,15 +52,11 @@ pub fn speeds(scene: &Scene) -> Vec<Row> {
     if factor > 0.0 {
         let rate = (gravity / clearance * factor).sqrt();
         let speed = rate * clearance;
-        rows.push((
-            "whirl from the bottom above",
-            format!("{rate:.2} rad/s, {:.4} mm/s along the wall", speed * 1e3),
-        ));
+        let above = format!("{rate:.2} rad/s, {:.4} mm/s along the wall", speed * 1e3);
+        rows.push(("whirl from the bottom above", above));
         if mu > 0.0 {
-            rows.push((
-                "its growth time rho0/(mu v)",
-                millis(clearance / (mu * speed)),
-            ));
+            let growth = millis(clearance / (mu * speed));
+            rows.push(("its growth time rho0/(mu v)", growth));
         }
     }
     if machine.restitution < 1.0 {

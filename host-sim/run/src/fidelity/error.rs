@@ -1,9 +1,8 @@
 //! How wrong an output is.
 
 use super::force::pulses;
-use touchdown_base::history::{History, Impact, Pulse, Regime};
+use touchdown_base::history::{History, Impact, Regime};
 use touchdown_scene::{Output, Scene};
-use touchdown_truth::reference::pulse::Pulse as True;
 
 /// Impacts that are looked at.
 const IMPACTS: usize = 10;
@@ -18,22 +17,16 @@ pub fn error(output: Output, history: &History, truth: &History, scene: &Scene) 
         Output::ImpactSpeed => impact_speeds(history, truth),
         Output::Phases => phases(history, truth),
         Output::WhirlLoad => relative(load(history, scene), load(truth, scene)),
-        Output::PeakForce => force(history, truth, scene, |ours, real| {
-            relative(ours.peak_force, real.peak_force)
-        }),
-        Output::ContactTime => force(history, truth, scene, |ours, real| {
-            relative(ours.duration, real.duration)
-        }),
+        Output::PeakForce | Output::ContactTime => {
+            let Some((ours, real)) = pulses(history, truth, scene) else {
+                return f64::INFINITY;
+            };
+            match output {
+                Output::PeakForce => relative(ours.peak_force, real.peak_force),
+                _ => relative(ours.duration, real.duration),
+            }
+        }
     }
-}
-
-fn force(
-    history: &History,
-    truth: &History,
-    scene: &Scene,
-    apart: impl Fn(&Pulse, &True) -> f64,
-) -> f64 {
-    pulses(history, truth, scene).map_or(f64::INFINITY, |(ours, real)| apart(&ours, &real))
 }
 
 fn relative(ours: f64, theirs: f64) -> f64 {

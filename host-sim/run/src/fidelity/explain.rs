@@ -11,22 +11,16 @@ const LISTED: usize = 3;
 /// The choice, what it costs, how often it holds, and what the next cheaper ones lack.
 pub fn explain(choice: &Choice) -> String {
     let taken = choice.taken();
-    let mut text = format!(
-        "fidelity: {}; of {} combinations\n",
-        name(&taken.model),
-        choice.candidates.len()
-    );
+    let (name, all) = (name(&taken.model), choice.candidates.len());
+    let mut text = format!("fidelity: {name}; of {all} combinations\n");
     let which = match choice.suffices() {
         true => "the cheapest that suffices",
         false => "the nearest: none gives all that is asked",
     };
     let _ = writeln!(text, "{which}, measured over {} s", choice.measured);
-    if let Some(cost) = taken.cost {
-        let _ = writeln!(
-            text,
-            "  {} instructions a simulated second on the target",
-            count(cost)
-        );
+    if let Some(count) = taken.cost.map(count) {
+        let on = "instructions a simulated second on the target";
+        let _ = writeln!(text, "  {count} {on}");
     }
     for (index, request) in choice.asked.iter().enumerate() {
         let show = |error| request.output.show(error);
@@ -42,11 +36,7 @@ pub fn explain(choice: &Choice) -> String {
     if !choice.suffices() {
         return text;
     }
-    let cheaper: Vec<&Candidate> = choice
-        .candidates
-        .iter()
-        .take_while(|it| *it != taken)
-        .collect();
+    let cheaper = &choice.candidates[..choice.taken];
     for candidate in cheaper.iter().rev().take(LISTED) {
         let _ = writeln!(text, "  cheaper, but: {}", lacks(candidate, choice));
     }
@@ -57,28 +47,16 @@ pub fn explain(choice: &Choice) -> String {
 }
 
 fn lacks(candidate: &Candidate, choice: &Choice) -> String {
-    let errors = candidate
-        .tried
-        .as_ref()
-        .map_or(&candidate.errors, |it| &it.worst);
-    let faults: Vec<String> = choice
-        .asked
-        .iter()
-        .zip(errors)
-        .filter(|(request, error)| **error > request.tolerance)
-        .map(|(request, &error)| format!("{} {}", request.output, request.output.show(error)))
-        .collect();
-    let around = if candidate.tried.is_some() {
-        ", in a drop around this one"
-    } else {
-        ""
+    let (errors, around) = match &candidate.tried {
+        Some(tried) => (&tried.worst, ", in a drop around this one"),
+        None => (&candidate.errors, ""),
     };
+    let all = choice.asked.iter().zip(errors);
+    let beyond = all.filter(|(request, error)| **error > request.tolerance);
+    let faults = beyond.map(|(it, error)| format!("{} {}", it.output, it.output.show(*error)));
+    let faults = faults.collect::<Vec<_>>().join(", ");
     let cost = candidate.cost.map_or("not counted".to_owned(), count);
-    format!(
-        "{}, {cost}: {}{around}",
-        name(&candidate.model),
-        faults.join(", ")
-    )
+    format!("{}, {cost}: {faults}{around}", name(&candidate.model))
 }
 
 /// A combination, for people.

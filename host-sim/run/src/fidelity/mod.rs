@@ -2,7 +2,6 @@
 //! around it.
 
 pub mod combination;
-pub mod cost;
 mod error;
 mod explain;
 pub mod force;
@@ -12,8 +11,7 @@ pub use explain::explain;
 
 use rayon::prelude::*;
 
-use self::combination::with;
-use self::cost::{first_second, per_second};
+use self::combination::{first_second, per_second, with};
 use crate::ensemble::varied;
 use crate::model;
 use touchdown_base::history::History;

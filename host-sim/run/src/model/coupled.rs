@@ -1,10 +1,11 @@
 //! Rungs `support`, `two-plane` and `coupled`: from the scene's parts to a model.
 
 use touchdown_models::{
-    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement,
-    UnbalanceConfig, Whole,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement, UnbalanceConfig,
+    Whole,
 };
 use touchdown_rotor::error::ConfigError;
+use touchdown_rotor::real::Poly32;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, Start};
 
@@ -13,9 +14,8 @@ pub use super::machine::StepView;
 use super::machine::{MachineDrop, OnStep};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::{FollowedDrop, ModelRun};
-use super::{InNumbers, Numbers, Subject, in_numbers_of_rings, scaled};
-use touchdown_scene::scales::start_speed;
-use touchdown_scene::{Fidelity, MODES, Removable, Scene};
+use super::{Subject, scaled};
+use touchdown_scene::{Fidelity, MODES, Removable, Scene, scales};
 
 /// Coordinates of a rotor that only moves, that tilts too, and that bends too. Modes that a scene does not have
 /// stand still, because each number more is built for every number of rings and kind of numbers.
@@ -23,94 +23,81 @@ const MOVES: usize = 1;
 const TILTS: usize = 2;
 const BENDS: usize = 2 + MODES;
 
-/// What is done with the model, whatever its rings and coordinates.
-trait UseWhole {
-    type Output<R: Precision>;
+/// The model of a scene, whatever its rings and coordinates.
+trait AnyWhole<R> {
+    fn subject(self: Box<Self>, scene: &Scene) -> Subject<R, Boxed<R>>;
 
-    fn with<R: Precision, const N: usize, const Q: usize>(
-        self,
-        whole: Whole<R, N, Q>,
-        scales: Scales<f64>,
-    ) -> Result<Self::Output<R>, ConfigError>;
+    fn follow<'a>(
+        self: Box<Self>,
+        scene: &'a Scene,
+        on_step: Option<OnStep<'a>>,
+    ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError>;
 }
 
-struct AsSubject<'a>(&'a Scene);
+/// With its units.
+struct Built<R, const N: usize, const Q: usize>(Whole<R, N, Q>, Scales<f64>);
 
-impl UseWhole for AsSubject<'_> {
-    type Output<R: Precision> = Subject<R, Boxed<R>>;
-
-    fn with<R: Precision, const N: usize, const Q: usize>(
-        self,
-        whole: Whole<R, N, Q>,
-        scales: Scales<f64>,
-    ) -> Result<Subject<R, Boxed<R>>, ConfigError> {
-        Ok(Subject {
+impl<R: Precision, const N: usize, const Q: usize> AnyWhole<R> for Built<R, N, Q> {
+    fn subject(self: Box<Self>, scene: &Scene) -> Subject<R, Boxed<R>> {
+        let Self(whole, scales) = *self;
+        Subject {
             start: Start::Free {
                 position: whole.start.position,
                 velocity: whole.start.velocity,
             },
-            spin: R::lit(self.0.rotor.spin / scales.spin),
+            spin: R::lit(scene.rotor.spin / scales.spin),
             scales,
             state_size: size_of::<CoupledState<R, N, Q>>(),
             model: Boxed::new(whole),
-        })
+        }
+    }
+
+    fn follow<'a>(
+        self: Box<Self>,
+        scene: &'a Scene,
+        on_step: Option<OnStep<'a>>,
+    ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
+        let Self(whole, scales) = *self;
+        Ok(Box::new(MachineDrop::new(scene, on_step, whole, scales)?))
     }
 }
 
 /// The model with the scene's parts.
 pub(super) fn subject<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
-    in_parts::<R, _>(scene, AsSubject(scene))
+    Ok(in_parts::<R>(scene)?.subject(scene))
 }
 
-fn in_parts<R: Precision, V: UseWhole>(
-    scene: &Scene,
-    what: V,
-) -> Result<V::Output<R>, ConfigError> {
-    let rings = seats(scene).len();
+fn in_parts<R: Precision>(scene: &Scene) -> Result<Box<dyn AnyWhole<R>>, ConfigError> {
     let bends = modelled_modes(scene).next().is_some();
-    match (scene.model.rung, bends) {
-        (Fidelity::Support, _) => built::<R, V, 1, MOVES>(scene, what),
-        (_, false) => match rings {
-            1 => built::<R, V, 1, TILTS>(scene, what),
-            2 => built::<R, V, 2, TILTS>(scene, what),
-            3 => built::<R, V, 3, TILTS>(scene, what),
-            _ => built::<R, V, 4, TILTS>(scene, what),
-        },
-        (_, true) => match rings {
-            1 => built::<R, V, 1, BENDS>(scene, what),
-            2 => built::<R, V, 2, BENDS>(scene, what),
-            3 => built::<R, V, 3, BENDS>(scene, what),
-            _ => built::<R, V, 4, BENDS>(scene, what),
-        },
+    match (scene.model.rung, bends, seats(scene).len()) {
+        (Fidelity::Support, ..) => built::<R, 1, MOVES>(scene),
+        (_, false, 1) => built::<R, 1, TILTS>(scene),
+        (_, false, 2) => built::<R, 2, TILTS>(scene),
+        (_, false, 3) => built::<R, 3, TILTS>(scene),
+        (_, false, _) => built::<R, 4, TILTS>(scene),
+        (_, true, 1) => built::<R, 1, BENDS>(scene),
+        (_, true, 2) => built::<R, 2, BENDS>(scene),
+        (_, true, 3) => built::<R, 3, BENDS>(scene),
+        (_, true, _) => built::<R, 4, BENDS>(scene),
     }
 }
 
-fn built<R: Precision, V: UseWhole, const N: usize, const Q: usize>(
+fn built<R: Precision, const N: usize, const Q: usize>(
     scene: &Scene,
-    what: V,
-) -> Result<V::Output<R>, ConfigError> {
+) -> Result<Box<dyn AnyWhole<R>>, ConfigError> {
     let model = Coupled::<f64, N, Q>::try_new(&config::<N>(scene)?)?;
     let whole = Whole {
         start: placement(scene, &model).rounded::<R>(),
         model: model.rounded::<R>(),
     };
-    what.with(whole, *model.scales())
+    Ok(Box::new(Built(whole, *model.scales())))
 }
 
 fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
     let rings = seats(scene).try_into();
     let mut config = CoupledConfig {
-        mass: scene.rotor.mass,
-        polar_inertia: scene.rotor.polar_inertia,
-        transverse_inertia: scene.rotor.polar_inertia,
         rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,
-        gravity: [0.0, -scene.run.gravity],
-        speed: start_speed(scene),
-        unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); _],
-        base: None,
-        modes: [None; MODES],
-        step: scene.model.step,
+        ..CoupledConfig::of_plane(&scales::config(scene), [0.0; N])
     };
     let Some(machine) = ends(scene) else {
         return Ok(config);
@@ -139,11 +126,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         };
     }
     if scene.model.rung == Fidelity::Coupled && scene.model.has(Removable::Base) {
-        config.base = machine.base.map(|it| BaseConfig {
-            amplitude: it.amplitude,
-            rate: it.rate,
-            phase: it.phase,
-        });
+        config.base = machine.base;
     }
     for (to, mode) in config.modes.iter_mut().zip(modelled_modes(scene)) {
         *to = Some(ModeConfig {
@@ -188,28 +171,7 @@ pub(super) fn follow<'a>(
     scene: &'a Scene,
     on_step: Option<OnStep<'a>>,
 ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
-    in_numbers_of_rings(scene, MachineRelease(scene, on_step))
-}
-
-struct MachineRelease<'a>(&'a Scene, Option<OnStep<'a>>);
-
-impl<'a> InNumbers for MachineRelease<'a> {
-    type Output = Box<dyn FollowedDrop + 'a>;
-
-    fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError> {
-        in_parts::<R, _>(self.0, self)
-    }
-}
-
-impl<'a> UseWhole for MachineRelease<'a> {
-    type Output<R: Precision> = Box<dyn FollowedDrop + 'a>;
-
-    fn with<R: Precision, const N: usize, const Q: usize>(
-        self,
-        whole: Whole<R, N, Q>,
-        scales: Scales<f64>,
-    ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
-        let Self(scene, on_step) = self;
-        Ok(Box::new(MachineDrop::new(scene, on_step, whole, scales)?))
-    }
+    in_numbers!(scene, [Libm F64: f64, Libm F32: f32, Polynomial F32: Poly32], R => {
+        in_parts::<R>(scene)?.follow(scene, on_step)
+    })
 }

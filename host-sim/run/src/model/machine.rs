@@ -7,9 +7,9 @@ use touchdown_rotor::{Precision, Stepper};
 
 use super::parts::{ends, modelled_modes, seats, shape};
 use super::seen::{FollowedDrop, ModelRun, RaceEnd, RingEnd, Seen, steps_of_run};
-use touchdown_base::history::{Recorder, RotorState};
+use touchdown_base::history::Recorder;
 use touchdown_base::ledger::{Ledger, entries};
-use touchdown_base::rings::{Histories, Merge};
+use touchdown_base::rings::Merge;
 use touchdown_scene::sensors::PLANES;
 use touchdown_scene::{Fidelity, RINGS, Scene};
 use touchdown_truth::{Moving, TrueState, held};
@@ -123,8 +123,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             return;
         }
         let before = self.race_spins(&self.state);
-        let told = &mut self.told;
-        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| self.told.take(&it);
         self.of.model.step(&mut self.state, take);
         let after = self.race_spins(&self.state);
         for (turned, (a, b)) in self.turned.iter_mut().zip(before.iter().zip(after)) {
@@ -189,7 +188,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let (model, scales) = (&self.of.model, &self.seen.scales);
         let [radius, excursion] = self.peaks[ring];
         let motion = model.ring(&self.state, ring);
-        let [x_m, y_m] = motion.position.map(|x| x.to_f64() * scales.length);
+        let [x_m, y_m] = self.seen.metres(motion.position);
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
         let peak_radius_m = radius * scales.length;
         let held = model.load(&self.state, ring).held_peak.to_f64() * unit / scales.length;
@@ -217,30 +216,28 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
 
     /// Where the sensors see the rotor, m.
     fn sensed(&self, state: &CoupledState<R, N, Q>) -> [[f64; 2]; PLANES] {
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
         let Some(machine) = ends(self.scene) else {
-            return [metres(state.centre().0); PLANES];
+            return [self.seen.metres(state.centre().0); PLANES];
         };
         machine.sensors.map(|place| {
             let modes = shape(self.scene, place).map(R::lit);
             let shape = self.of.model.shape_at(R::lit(place), modes);
-            metres(state.axis_at(&shape).0)
+            self.seen.metres(state.axis_at(&shape).0)
         })
     }
 
     fn moving(&self, state: &CoupledState<R, N, Q>, since: f64) -> Moving {
-        let model = &self.of.model;
-        let metres = |place: [R; 2]| place.map(|x| x.to_f64() * self.seen.scales.length);
+        let (model, seen) = (&self.of.model, &self.seen);
         if self.scene.two_plane.is_some() {
             let mut ends = [[0.0; 2]; RINGS];
             for (ring, end) in ends.iter_mut().enumerate().take(N) {
-                *end = metres(model.displacement(state, ring));
+                *end = seen.metres(model.displacement(state, ring));
             }
             return Moving::Ends(ends);
         }
         let race_spin = self.race_spins(state)[0];
         Moving::Ring {
-            position: metres(model.ring(state, 0).position),
+            position: seen.metres(model.ring(state, 0).position),
             race_spin,
             race_angle: self.turned[0] + since * race_spin,
         }
@@ -259,10 +256,9 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         let mut state = self.state;
         if fraction > 0.0 {
+            let (model, fraction) = (&self.of.model, R::lit(fraction));
             let ignore: &mut dyn FnMut(RingEvent<R>) = &mut |_| ();
-            self.of
-                .model
-                .part_step(&mut state, R::lit(fraction), ignore);
+            model.part_step(&mut state, fraction, ignore);
         }
         Some(TrueState {
             rotor: self.seen.state(&self.of.kinematics(&state), time),
@@ -277,11 +273,9 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         let (steps, fraction) = self.steps(scene.run.duration);
         self.to(steps);
         if fraction > 0.0 && self.given_up.is_none() {
-            let told = &mut self.told;
-            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
-            self.of
-                .model
-                .part_step(&mut self.state, R::lit(fraction), take);
+            let model = &self.of.model;
+            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| self.told.take(&it);
+            model.part_step(&mut self.state, R::lit(fraction), take);
             self.farthest();
         }
         for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {
@@ -289,12 +283,6 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         let (model, state, seen) = (&self.of.model, &self.state, &self.seen);
         let duration = self.given_up.unwrap_or(scene.run.duration);
-        let ends: Vec<RotorState> = (0..N)
-            .map(|ring| {
-                let now = model.kinematics_at(state, ring);
-                self.told.seen[ring].state(&now, duration)
-            })
-            .collect();
         let end = seen.state(&self.of.kinematics(state), duration);
         let still = seen.still();
         let unit = scene.rotor.mass * seen.scales.speed * seen.scales.speed;
@@ -304,20 +292,19 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
             given_up: self.given_up,
             work: state.work(),
             jammed: state.jammed().map(|it| it as f64 * scene.model.step),
-            ring: None,
-            seats: Vec::new(),
             ledger: Some(ledger(scene, unit, &energy)),
-            histories: Histories {
-                whole: self.told.whole.clone().finish(end, still),
-                rings: Vec::new(),
-            },
+            ..ModelRun::of_rotor(self.told.whole.clone().finish(end, still))
         };
         if scene.model.rung == Fidelity::Support {
             run.ring = seats.last();
         } else {
             run.seats = seats.collect();
-            let rings = self.told.rings.into_iter().zip(ends);
-            run.histories.rings = rings.map(|(ring, end)| ring.finish(end, still)).collect();
+            let rings = self.told.rings.into_iter().enumerate();
+            let ended = rings.map(|(k, ring)| {
+                let now = model.kinematics_at(state, k);
+                ring.finish(self.told.seen[k].state(&now, duration), still)
+            });
+            run.histories.rings = ended.collect();
         }
         run
     }
@@ -343,6 +330,11 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
     let driven = machine.is_some_and(|it| it.unbalance[0] != 0.0 || it.skew[0] != 0.0);
     let moved = machine
         .is_some_and(|it| it.base.is_some() || it.magnets.iter().any(|magnet| magnet.on.is_some()));
+    let damped = bends || magnets;
+    let drive = match moved {
+        true => "by base, switched magnets and drive of the spin",
+        false => "by the drive of the spin",
+    };
     Ledger {
         start_j: unit * start.stored(),
         stored: entries(
@@ -367,17 +359,8 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
                 (mounts, "damper", end.mounts),
                 (stops, "hard stop", end.stops),
                 (races, "drag", end.drag),
-                (
-                    bends || magnets,
-                    "damping of bending and magnets",
-                    end.damped,
-                ),
-                (driven && !moved, "by the drive of the spin", -end.driven),
-                (
-                    moved,
-                    "by base, switched magnets and drive of the spin",
-                    -end.driven,
-                ),
+                (damped, "damping of bending and magnets", end.damped),
+                (driven || moved, drive, -end.driven),
             ],
         ),
     }

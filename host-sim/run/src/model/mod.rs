@@ -1,17 +1,28 @@
 //! The model under test over a scene.
 
+/// `$what` in the scene's kind of numbers, `$R`, where that is one of those listed.
+macro_rules! in_numbers {
+    ($scene:expr, [$($math:ident $precision:ident: $number:ty),+], $R:ident => $what:expr) => {
+        match ($scene.model.math, $scene.model.precision) {
+            $((touchdown_scene::Math::$math, touchdown_scene::Precision::$precision) => {
+                type $R = $number;
+                $what
+            })+
+            _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
+        }
+    };
+}
+
 mod boxed;
 pub mod coupled;
 mod machine;
 mod parts;
 mod plane;
 mod seen;
-mod simulate;
 
 use boxed::Boxed;
-pub use plane::follow;
+pub use plane::{follow, run, simulate, simulate_to_verdict};
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
-pub use simulate::{run, simulate, simulate_to_verdict};
 
 use touchdown_models::{Euler, Hertz, Line, LinePower, Moreau, Point, Shape, Verlet};
 use touchdown_rotor::error::ConfigError;
@@ -21,7 +32,7 @@ use touchdown_rotor::{Precision, Rigid, Start as ScaledStart, Stepper};
 
 use touchdown_base::machine::Start;
 use touchdown_scene::scales::{compliant, config};
-use touchdown_scene::{Contact, Fidelity, Math, Scene, Scheme};
+use touchdown_scene::{Contact, Fidelity, Scene, Scheme};
 
 /// What is done with a model, whatever its rung and numbers.
 pub trait Use {
@@ -67,43 +78,9 @@ macro_rules! numbers {
 
 numbers!(f64: in_rung, f32: in_rung, Poly32: in_rung, Micro32: in_plane);
 
-/// What is done with numbers of a kind.
-trait InNumbers {
-    type Output;
-
-    fn with<R: Numbers>(self) -> Result<Self::Output, ConfigError>;
-}
-
-/// Calls `what` with the scene's kind of numbers.
-fn in_numbers<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output, ConfigError> {
-    match (scene.model.math, scene.model.precision) {
-        (Math::Micromath, touchdown_scene::Precision::F32) => what.with::<Micro32>(),
-        _ => in_numbers_of_rings(scene, what),
-    }
-}
-
-/// Likewise, of those in which there are rings that give way or turn, and rotors that tilt.
-fn in_numbers_of_rings<T: InNumbers>(scene: &Scene, what: T) -> Result<T::Output, ConfigError> {
-    match (scene.model.math, scene.model.precision) {
-        (Math::Libm, touchdown_scene::Precision::F64) => what.with::<f64>(),
-        (Math::Libm, touchdown_scene::Precision::F32) => what.with::<f32>(),
-        (Math::Polynomial, touchdown_scene::Precision::F32) => what.with::<Poly32>(),
-        _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
-    }
-}
-
 /// Builds the scene's rung in the scene's numbers, for `what`.
 pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigError> {
-    in_numbers(scene, InRung(scene, what))
-}
-
-struct InRung<'a, U>(&'a Scene, U);
-
-impl<U: Use> InNumbers for InRung<'_, U> {
-    type Output = U::Output;
-
-    fn with<R: Numbers>(self) -> Result<U::Output, ConfigError> {
-        let Self(scene, what) = self;
+    in_numbers!(scene, [Libm F64: f64, Libm F32: f32, Polynomial F32: Poly32, Micromath F32: Micro32], R => {
         match scene.model.rung {
             Fidelity::Rigid => {
                 let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
@@ -111,7 +88,7 @@ impl<U: Use> InNumbers for InRung<'_, U> {
             }
             _ => what.with(&R::by_steps(scene)?),
         }
-    }
+    })
 }
 
 fn in_rung<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {

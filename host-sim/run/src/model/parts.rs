@@ -1,13 +1,8 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
-use touchdown_models::{
-    CompliantConfig, CompliantShape, MountConfig, RaceConfig, RingConfig, SeatConfig, StopConfig,
-};
+use touchdown_models::{MountConfig, RingConfig, SeatConfig};
 
-use touchdown_scene::{
-    BallBearing, CompliantWall, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene,
-    Stop, TwoPlane,
-};
+use touchdown_scene::{Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane};
 
 /// The rotor's ends, where the rung has them.
 pub(super) fn ends(scene: &Scene) -> Option<&TwoPlane> {
@@ -52,51 +47,16 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
             friction: ring.retainer.friction,
             restitution: ring.retainer.restitution,
         },
-        compliant: ring.wall.filter(|_| has_walls).map(compliant),
+        compliant: ring.wall.filter(|_| has_walls).map(|it| it.law),
         mount: ring
             .support
             .filter(|_| has(Removable::Mount))
             .map(|it| MountConfig {
-                mass: it.mass,
-                stiffness: it.stiffness,
-                damping: it.damping,
-                vertical: it.vertical,
-                friction: it.friction,
-                stop: it.stop.filter(|_| has(Removable::Stop)).map(stop),
+                stop: it.stop.filter(|_| has(Removable::Stop)),
+                ..it
             }),
-        race: ring.ball_bearing.filter(|_| has(turns)).map(race),
+        race: ring.ball_bearing.filter(|_| has(turns)).map(|it| it.race),
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
-}
-
-fn stop(stop: Stop) -> StopConfig<f64> {
-    StopConfig {
-        travel: stop.travel,
-        stiffness: stop.stiffness,
-    }
-}
-
-fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
-    CompliantConfig {
-        shape: match wall.contact {
-            Contact::Point => CompliantShape::Point,
-            Contact::Line { .. } => CompliantShape::Line,
-            Contact::LinePower { .. } => CompliantShape::LinePower,
-        },
-        stiffness: wall.stiffness,
-        balls: wall.balls,
-        slowest: wall.slowest,
-    }
-}
-
-fn race(bearing: BallBearing) -> RaceConfig<f64> {
-    RaceConfig {
-        inertia: bearing.inertia,
-        dry_drag: bearing.dry_drag,
-        viscous_drag: bearing.viscous_drag,
-        cage_ratio: bearing.cage_ratio,
-        heat_capacity: bearing.heat_capacity,
-        heat_loss: bearing.heat_loss,
-    }
 }

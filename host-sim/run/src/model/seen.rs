@@ -26,7 +26,7 @@ pub trait FollowedDrop {
 }
 
 /// What a model made of a drop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelRun {
     /// What happened.
     pub histories: Histories,
@@ -48,17 +48,10 @@ pub struct ModelRun {
 impl ModelRun {
     /// Where nothing moves but the rotor.
     pub fn of_rotor(whole: History) -> Self {
+        let rings = Vec::new();
         Self {
-            histories: Histories {
-                whole,
-                rings: Vec::new(),
-            },
-            given_up: None,
-            work: 0,
-            jammed: None,
-            ledger: None,
-            ring: None,
-            seats: Vec::new(),
+            histories: Histories { whole, rings },
+            ..Self::default()
         }
     }
 }
@@ -171,11 +164,16 @@ impl Seen {
         }
     }
 
+    /// A place in m.
+    pub(super) fn metres<R: Real>(&self, place: [R; 2]) -> [f64; 2] {
+        place.map(|x| x.to_f64() * self.scales.length)
+    }
+
     pub(super) fn state<R: Real>(&self, k: &Kinematics<R>, time: f64) -> RotorState {
         let scales = &self.scales;
         RotorState {
             time,
-            position: k.position.map(|x| x.to_f64() * scales.length),
+            position: self.metres(k.position),
             velocity: k.velocity.map(|v| v.to_f64() * scales.speed),
             spin: k.spin.to_f64() * scales.spin,
             turns_in_contact: k.turns.0 as f64 + k.turns.1.to_f64() / std::f64::consts::TAU,

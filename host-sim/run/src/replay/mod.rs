@@ -12,10 +12,9 @@ use touchdown_core::sample::Sample;
 pub use envelope::{Bucket, Envelope};
 pub use excerpt::{Excerpt, first_drop};
 
-use crate::controller_trace::ControllerTrace;
+use crate::controller_trace::{ControllerTrace, Procedure};
 use crate::detection::detection;
 use crate::outcome::{DetectedEvent, Detection};
-use crate::procedure::Procedure;
 use crate::target::Target;
 use crate::timebase::Timebase;
 use touchdown_base::failure::Failure;

@@ -17,8 +17,7 @@ use serde::Serialize;
 
 use touchdown_base::progress;
 use touchdown_run::ensemble::varied;
-use touchdown_run::fidelity::combination::with;
-use touchdown_run::fidelity::cost::first_second;
+use touchdown_run::fidelity::combination::{first_second, with};
 use touchdown_run::model;
 use touchdown_scene::parts::{degrees_of_freedom, removable};
 use touchdown_scene::{Removable, Scene};
