@@ -29,14 +29,7 @@ pub struct Crash {
     pub place: u32,
     /// For a panic the CRC-32 of the file's name, for a fault the link register, else 0.
     pub detail: u32,
-    /// Of a fault, what the core says of it.
-    pub status: FaultStatus,
-}
-
-/// Registers of the core after a fault: ARMv7-M, system control block.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FaultStatus {
-    /// CFSR: usage, bus and memory faults.
+    /// Of a fault what the core says of it (ARMv7-M, system control block), else 0. CFSR: usage, bus and memory faults.
     pub configurable: u32,
     /// HFSR.
     pub hard: u32,
@@ -45,15 +38,24 @@ pub struct FaultStatus {
 }
 
 impl Crash {
+    /// Of which the core says nothing.
+    pub fn new(cause: Cause, place: u32, detail: u32) -> Self {
+        Self {
+            cause,
+            place,
+            detail,
+            configurable: 0,
+            hard: 0,
+            address: 0,
+        }
+    }
+
     /// A panic.
     pub fn of_panic(info: &PanicInfo) -> Self {
-        let place = info.location();
-        Self {
-            cause: Cause::Panic,
-            place: place.map_or(0, |place| place.line()),
-            detail: place.map_or(0, |place| CRC.checksum(place.file().as_bytes())),
-            status: FaultStatus::default(),
-        }
+        let (line, file) = info.location().map_or((0, 0), |place| {
+            (place.line(), CRC.checksum(place.file().as_bytes()))
+        });
+        Self::new(Cause::Panic, line, file)
     }
 
     /// Record to words: magic, cause, place, detail, CFSR, HFSR, address, CRC-32 of these.
@@ -63,9 +65,9 @@ impl Crash {
             self.cause as u32,
             self.place,
             self.detail,
-            self.status.configurable,
-            self.status.hard,
-            self.status.address,
+            self.configurable,
+            self.hard,
+            self.address,
             0,
         ];
         words[WORDS - 1] = checksum(&words);
@@ -91,11 +93,9 @@ impl Crash {
             cause: Cause::from_repr(u8::try_from(cause).ok()?)?,
             place,
             detail,
-            status: FaultStatus {
-                configurable,
-                hard,
-                address,
-            },
+            configurable,
+            hard,
+            address,
         })
     }
 }
@@ -116,11 +116,9 @@ mod tests {
         cause: Cause::HardFault,
         place: 0x0800_1234,
         detail: 0x0800_0567,
-        status: FaultStatus {
-            configurable: 0x8200,
-            hard: 0x4000_0000,
-            address: 0x4002_3c00,
-        },
+        configurable: 0x8200,
+        hard: 0x4000_0000,
+        address: 0x4002_3c00,
     };
 
     #[test]

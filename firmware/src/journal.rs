@@ -85,15 +85,9 @@ pub fn found(fault: Fault) {
 
 /// The record of a crash.
 pub fn crash(crash: &Crash) {
-    let status = &crash.status;
     error!(
         "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}; cfsr {=u32:#x}, hfsr {=u32:#x}, address {=u32:#x}",
-        crash.cause as u8,
-        crash.place,
-        crash.detail,
-        status.configurable,
-        status.hard,
-        status.address
+        crash.cause as u8, crash.place, crash.detail, crash.configurable, crash.hard, crash.address
     );
 }
 

@@ -82,6 +82,9 @@ pub trait Platform {
 
 /// Where samples come from: a converter of the chip's own, or one on a bus.
 pub trait SampleSource {
+    /// Starts sampling.
+    fn start(&self);
+
     /// Number of the newest sample that has begun, modulo 2^16, as hardware counts.
     fn number(&self) -> u16;
 

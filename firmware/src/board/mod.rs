@@ -1,29 +1,13 @@
 //! What the application asks of a board, and the boards: the only place with registers.
 
-#[cfg(target_os = "none")]
-mod bus;
-#[cfg(target_os = "none")]
-mod chip_platform;
 #[cfg(all(target_os = "none", feature = "f405"))]
 pub mod f405;
 #[cfg(all(target_os = "none", feature = "g474"))]
 pub mod g474;
-#[cfg(target_os = "none")]
-mod held;
-#[cfg(target_os = "none")]
-mod image;
-#[cfg(target_os = "none")]
-mod inputs;
-#[cfg(target_os = "none")]
-mod line;
 #[cfg(all(target_os = "none", feature = "f405"))]
 pub mod qemu;
 #[cfg(target_os = "none")]
-pub mod record;
-#[cfg(target_os = "none")]
 pub mod silicon;
-#[cfg(target_os = "none")]
-mod slots;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;

@@ -3,7 +3,7 @@
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{CycleDelay, SpiRegisters};
+use crate::board::silicon::{CycleDelay, SpiRegisters};
 
 /// PB3 clock, PB4 in, PB5 out, PA15 chip select.
 pub struct Spi1 {

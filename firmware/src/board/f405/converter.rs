@@ -69,14 +69,13 @@ impl Converter {
             number,
         }
     }
-
-    /// Starts sampling.
-    pub fn start(&self) {
-        self.timer.cr1().write(|w| w.cen().enabled());
-    }
 }
 
 impl SampleSource for Converter {
+    fn start(&self) {
+        self.timer.cr1().write(|w| w.cen().enabled());
+    }
+
     fn number(&self) -> u16 {
         self.number.cnt().read().cnt().bits() as u16
     }

@@ -4,7 +4,7 @@ use stm32f4::stm32f405::{DMA2, GPIOB, RCC, USART1};
 
 use super::clocks::APB2_HZ;
 use crate::board::BAUD;
-use crate::board::line::{LineRegisters, RING_BYTES};
+use crate::board::silicon::{LineRegisters, RING_BYTES};
 
 /// RM0090, DMA2 request mapping: USART1_RX is channel 4 of stream 2, USART1_TX channel 4 of stream 7.
 const RECEIVES: usize = 2;

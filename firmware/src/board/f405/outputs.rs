@@ -3,21 +3,32 @@
 use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
-use crate::board::silicon::{OutputRegisters, Watchdog};
+use crate::board::silicon::OutputRegisters;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4, of the same port, is the service input, high while on.
-pub struct OutputPins(GPIOC);
+///
+/// The watchdog resets the core when good ticks stay away for 2 ms (1.3 to 3.8 ms over the tolerance of its oscillator, 17
+/// to 47 kHz: DS8626, LSI characteristics).
+pub struct OutputPins {
+    pins: GPIOC,
+    watchdog: IWDG,
+    debug: DBGMCU,
+}
 
 impl OutputPins {
-    /// All without current.
-    pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
+    /// All without current, the watchdog not started.
+    pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
         rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
-        let outputs = Self(pins);
+        let outputs = Self {
+            pins,
+            watchdog,
+            debug,
+        };
         outputs.drive(Outputs::SAFE);
         // A broken wire reads as off.
-        outputs.0.pupdr().modify(|_, w| w.pupdr4().pull_down());
-        outputs.0.moder().modify(|_, w| {
+        outputs.pins.pupdr().modify(|_, w| w.pupdr4().pull_down());
+        outputs.pins.moder().modify(|_, w| {
             w.moder6().output().moder7().output();
             w.moder2().output().moder3().output()
         });
@@ -28,7 +39,7 @@ impl OutputPins {
 impl OutputRegisters for OutputPins {
     fn drive(&self, outputs: Outputs) {
         // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
-        self.0.bsrr().write(|w| {
+        self.pins.bsrr().write(|w| {
             drop_all(w)
                 .bs6()
                 .bit(outputs.run)
@@ -46,30 +57,8 @@ impl OutputRegisters for OutputPins {
         let pins = unsafe { &*GPIOC::ptr() };
         pins.bsrr().write(drop_all);
     }
-}
 
-type Levels = stm32f4::stm32f405::gpioi::bsrr::W;
-
-fn drop_all(w: &mut Levels) -> &mut Levels {
-    w.br6().reset().br7().reset().br2().reset().br3().reset()
-}
-
-/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms (1.3
-/// to 3.8 ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
-pub struct IndependentWatchdog {
-    watchdog: IWDG,
-    debug: DBGMCU,
-}
-
-impl IndependentWatchdog {
-    /// Not started.
-    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
-        Self { watchdog, debug }
-    }
-}
-
-impl Watchdog for IndependentWatchdog {
-    fn start(&self) {
+    fn start_watchdog(&self) {
         self.debug
             .apb1_fz()
             .modify(|_, w| w.dbg_iwdg_stop().set_bit());
@@ -83,4 +72,10 @@ impl Watchdog for IndependentWatchdog {
     fn feed(&self) {
         self.watchdog.kr().write(|w| w.key().feed());
     }
+}
+
+type Levels = stm32f4::stm32f405::gpioi::bsrr::W;
+
+fn drop_all(w: &mut Levels) -> &mut Levels {
+    w.br6().reset().br7().reset().br2().reset().br3().reset()
 }

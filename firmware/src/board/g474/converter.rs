@@ -13,7 +13,7 @@ use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
 use crate::ad7606::Ad7606;
 use crate::board::SAMPLE_RATE_HZ;
-use crate::board::bus::Bus;
+use crate::board::silicon::Bus;
 use crate::platform::SampleSource;
 
 /// Cycles for which CONVST is low before it rises: 0.4 us.
@@ -107,14 +107,13 @@ impl ExternalConverter {
             edges,
         })
     }
-
-    /// Starts sampling.
-    pub fn start(&self) {
-        self.timer.cr1().write(|w| w.cen().set_bit());
-    }
 }
 
 impl SampleSource for ExternalConverter {
+    fn start(&self) {
+        self.timer.cr1().write(|w| w.cen().set_bit());
+    }
+
     fn number(&self) -> u16 {
         self.number.cnt().read().bits() as u16
     }

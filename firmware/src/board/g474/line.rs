@@ -4,7 +4,7 @@ use stm32g4::stm32g474::{DMA1, DMAMUX, GPIOA, RCC, USART1};
 
 use super::clocks::CORE_HZ;
 use crate::board::BAUD;
-use crate::board::line::{LineRegisters, RING_BYTES};
+use crate::board::silicon::{LineRegisters, RING_BYTES};
 
 /// Channels of DMA1, and of the multiplexer one less; requests of USART1_RX and USART1_TX: RM0440, DMAMUX request mapping, held against
 /// NuttX, stm32g4xxxx_dmamux.h.

@@ -3,25 +3,35 @@
 use stm32g4::stm32g474::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
-use crate::board::silicon::{OutputRegisters, Watchdog};
+use crate::board::silicon::OutputRegisters;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4 is the service input, high while on.
-pub struct OutputPort(GPIOC);
+///
+/// The watchdog resets the core when good ticks stay away for 2 ms of its oscillator.
+pub struct OutputPort {
+    pins: GPIOC,
+    watchdog: IWDG,
+    debug: DBGMCU,
+}
 
 /// RM0440, GPIOx_BSRR: the upper half resets.
 const DROP_ALL: u32 = (1 << 6 | 1 << 7 | 1 << 2 | 1 << 3) << 16;
 
 impl OutputPort {
-    /// All without current.
-    pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
+    /// All without current, the watchdog not started.
+    pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
         rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
-        let outputs = Self(pins);
+        let outputs = Self {
+            pins,
+            watchdog,
+            debug,
+        };
         outputs.drive(Outputs::SAFE);
         // SAFETY: pull-down is 2: a broken wire reads as off. An output is 1, an input 0; after reset all are analog.
         unsafe {
-            outputs.0.pupdr().modify(|_, w| w.pupdr4().bits(2));
-            outputs.0.moder().modify(|_, w| {
+            outputs.pins.pupdr().modify(|_, w| w.pupdr4().bits(2));
+            outputs.pins.moder().modify(|_, w| {
                 w.moder6().bits(1).moder7().bits(1);
                 w.moder2().bits(1).moder3().bits(1).moder4().bits(0)
             });
@@ -40,7 +50,7 @@ impl OutputRegisters for OutputPort {
         ];
         let set = levels.map(|(level, pin)| u32::from(level) << pin);
         // SAFETY: where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
-        self.0
+        self.pins
             .bsrr()
             .write(|w| unsafe { w.bits(set.iter().fold(DROP_ALL, |all, it| all | it)) });
     }
@@ -51,23 +61,8 @@ impl OutputRegisters for OutputPort {
         // SAFETY: likewise.
         pins.bsrr().write(|w| unsafe { w.bits(DROP_ALL) });
     }
-}
 
-/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms of its oscillator.
-pub struct IndependentWatchdog {
-    watchdog: IWDG,
-    debug: DBGMCU,
-}
-
-impl IndependentWatchdog {
-    /// Not started.
-    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
-        Self { watchdog, debug }
-    }
-}
-
-impl Watchdog for IndependentWatchdog {
-    fn start(&self) {
+    fn start_watchdog(&self) {
         self.debug
             .apb1l_fz()
             .modify(|_, w| w.dbg_iwdg_stop().set_bit());

@@ -29,8 +29,11 @@ use self::line::{Came, Goes, Wire};
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
 use self::settings::SettingsFile;
-use super::held::{self, Held};
-use super::{Abilities, Board, EMULATED_SLOTS, image};
+use super::f405::F405;
+use super::silicon::ConfigFlash as _;
+use super::silicon::held::{self, Held};
+use super::silicon::image;
+use super::{Abilities, Board, EMULATED_SLOTS};
 use crate::drop_log::DropLog;
 use crate::intake::Intake;
 use crate::journal;
@@ -205,7 +208,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         failed: false,
     };
     let filled = memory.monitor.fill(&settings, found, boot, board);
-    let (intake, tick) = filled.map_err(|refusal| {
+    let (intake, tick, below) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
@@ -214,7 +217,6 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     } else {
         tick.app.assume_lift();
     }
-    let forecast = memory::forecast_task(&settings.monitor).map_err(|_| Failure::Config)?;
     TICK.put(tick);
     let queues = (&mut memory.came, &mut memory.goes);
     let (wire, line) = line::open(chip.USART1, queues, abilities.sample_rate);
@@ -237,7 +239,6 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         heard: None,
         was_over: false,
     };
-    let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
     Ok((below, platform))
 }
 
@@ -267,7 +268,7 @@ fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
         fallback: head.config.into(),
         is_configured: head.is_configured,
-        is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
+        is_whole: image::is_whole(F405::START),
         crash: None,
         has_bitten: false,
     }

@@ -8,7 +8,7 @@ use crate::power_on::InForce;
 
 /// Flash of a chip that no image takes.
 pub trait ConfigFlash {
-    /// Its first address and its bytes; any byte may be read.
+    /// Its first address; any byte may be read.
     const START: usize;
     /// Its bytes.
     const BYTES: usize;
