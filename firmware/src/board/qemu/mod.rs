@@ -25,7 +25,7 @@ use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
 
 use self::files::{Files, Replay};
-use self::line::{Came, Goes, Wire};
+use self::line::Wire;
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
 use self::settings::SettingsFile;
@@ -38,7 +38,7 @@ use crate::drop_log::DropLog;
 use crate::intake::Intake;
 use crate::journal;
 use crate::main_loop::MainLoop;
-use crate::memory;
+use crate::memory::Memory;
 use crate::power_on::{InForce, PowerOn};
 use crate::tick::TickTask;
 
@@ -68,24 +68,6 @@ const RESTART: i32 = 7;
 type Name = heapless::CString<256>;
 /// The drop log in a file.
 pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
-
-/// What outlives main's frame.
-pub struct Memory {
-    monitor: memory::Memory,
-    came: Came,
-    goes: Goes,
-}
-
-impl Memory {
-    /// Empty.
-    pub const fn empty() -> Self {
-        Self {
-            monitor: memory::Memory::empty(),
-            came: Came::new(),
-            goes: Goes::new(),
-        }
-    }
-}
 
 static SAMPLING: Held<Sampling> = Held::new();
 static TICK: Held<TickTask<'static, Emulated>> = Held::new();
@@ -207,7 +189,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         block,
         failed: false,
     };
-    let filled = memory.monitor.fill(&settings, found, boot, board);
+    let filled = memory.fill(&settings, found, boot, board);
     let (intake, tick, below) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -218,8 +200,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         tick.app.assume_lift();
     }
     TICK.put(tick);
-    let queues = (&mut memory.came, &mut memory.goes);
-    let (wire, line) = line::open(chip.USART1, queues, abilities.sample_rate);
+    let (wire, line) = line::open(chip.USART1, abilities.sample_rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
         replay: files.replay,
