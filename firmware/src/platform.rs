@@ -57,7 +57,9 @@ pub trait Platform {
     }
 
     /// What nobody can know before; 0 without a source of it.
-    fn unknown(&mut self) -> u64;
+    fn unknown(&mut self) -> u64 {
+        0
+    }
 
     /// Forgets why it was reset, where that is kept: an order to clear was obeyed.
     fn forget_reset(&mut self) {}

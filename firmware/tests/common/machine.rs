@@ -230,9 +230,5 @@ impl Platform for Machine {
         Err(Refusal::NoStore)
     }
 
-    fn unknown(&mut self) -> u64 {
-        0
-    }
-
     fn reset(&mut self) {}
 }

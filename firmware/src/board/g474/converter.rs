@@ -6,7 +6,7 @@
 use core::convert::Infallible;
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3};
+use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3, gpiob};
 use touchdown_core::sample::Sample;
 
 use super::clocks::CORE_HZ;
@@ -22,15 +22,20 @@ const LOW: u32 = 64;
 /// BUSY and RESET.
 pub struct PortBPin;
 
+impl PortBPin {
+    fn port() -> &'static gpiob::RegisterBlock {
+        // SAFETY: here it is read, or written where that only sets and resets.
+        unsafe { &*GPIOB::ptr() }
+    }
+}
+
 impl ErrorType for PortBPin {
     type Error = Infallible;
 }
 
 impl InputPin for PortBPin {
     fn is_high(&mut self) -> Result<bool, Infallible> {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOB::ptr() };
-        Ok(pins.idr().read().idr0().bit_is_set())
+        Ok(Self::port().idr().read().idr0().bit_is_set())
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {
@@ -40,16 +45,12 @@ impl InputPin for PortBPin {
 
 impl OutputPin for PortBPin {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        // SAFETY: a single write to a register that only sets and resets.
-        let pins = unsafe { &*GPIOB::ptr() };
-        pins.bsrr().write(|w| w.br1().set_bit());
+        Self::port().bsrr().write(|w| w.br1().set_bit());
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        // SAFETY: likewise.
-        let pins = unsafe { &*GPIOB::ptr() };
-        pins.bsrr().write(|w| w.bs1().set_bit());
+        Self::port().bsrr().write(|w| w.bs1().set_bit());
         Ok(())
     }
 }

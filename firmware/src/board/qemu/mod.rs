@@ -82,13 +82,12 @@ pub struct Emulated {
     shown: Option<Shown>,
     ticks: u64,
     block: InForce,
-    failed: bool,
 }
 
 impl Emulated {
     fn write(&mut self, record: &Record) {
-        let bytes = wire::encode_record(record);
-        self.failed |= self.answer.write_all(&bytes).is_err();
+        let written = self.answer.write_all(&wire::encode_record(record));
+        written.unwrap_or_else(|_| exit(Failure::Answer as i32));
     }
 }
 
@@ -187,7 +186,6 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         shown: None,
         ticks: 0,
         block,
-        failed: false,
     };
     let filled = memory.fill(&settings, found, boot, board);
     let (intake, tick, below) = filled.map_err(|refusal| {
