@@ -11,7 +11,7 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::spi::SpiDevice;
-use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
+use touchdown_core::sample::CHANNELS;
 
 /// Fastest clock at 3.3 V, Hz: f_SCLK. G: 14.5 MHz, which is DS's for VDRIVE above 2.7 V; its 17 MHz are for above
 /// 3.3 V, which a supply of 3.3 V is not.
@@ -40,21 +40,9 @@ impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
         Some(adc)
     }
 
-    /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample without valid channels.
-    pub fn take(&mut self, delay: &mut impl DelayNs) -> Sample {
-        let codes = self.codes(delay);
-        Sample {
-            counts: codes.unwrap_or([0; CHANNELS]),
-            valid: if codes.is_some() { 0b1111 } else { 0 },
-            spin: None,
-            levitated: None,
-            edges: [None; TACHOMETERS],
-        }
-    }
-
-    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count. `None` where a pin or the SPI fails, or BUSY
-    /// does not go low in time.
-    fn codes(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
+    /// Waits for the end of the conversion, and reads it. Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one
+    /// count. `None` where a pin or the SPI fails, or BUSY does not go low in time.
+    pub fn take(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
         let mut reads = 0;
         while self.busy.is_high().ok()? {
             reads += 1;

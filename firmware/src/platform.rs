@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::CHANNELS;
 use touchdown_protocol::controller::{Cause, Faults, Shown};
 use touchdown_protocol::link::{Frame, Log, Refusal};
 use touchdown_protocol::log::block;
@@ -90,8 +90,8 @@ pub trait SampleSource {
     /// Number of the newest sample that has begun, modulo 2^16, as hardware counts.
     fn number(&self) -> u16;
 
-    /// The sample that was just converted.
-    fn take(&mut self) -> Sample;
+    /// What was just converted; none where the converter fails.
+    fn take(&mut self) -> Option<[u16; CHANNELS]>;
 }
 
 /// Of a board's journal.

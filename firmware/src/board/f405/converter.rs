@@ -4,7 +4,7 @@
 //! ADC1 converts x and ADC2 y: both of a plane at one instant, plane b 40 converter cycles, 1.9 us, after plane a.
 
 use stm32f4::stm32f405::{ADC_COMMON, ADC1, ADC2, GPIOA, RCC, TIM2, TIM3, adc1};
-use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sample::CHANNELS;
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::board::SAMPLE_RATE_HZ;
@@ -81,18 +81,12 @@ impl SampleSource for Converter {
     }
 
     // Both converters are through: they began together, and take as long.
-    fn take(&mut self) -> Sample {
+    fn take(&mut self) -> Option<[u16; CHANNELS]> {
         self.x.sr().modify(|_, w| w.jeoc().clear());
         self.y.sr().modify(|_, w| w.jeoc().clear());
         let [ax, bx] = results(&self.x);
         let [ay, by] = results(&self.y);
-        Sample {
-            counts: [ax, ay, bx, by],
-            valid: 0b1111,
-            spin: None,
-            levitated: None,
-            edges: [None; TACHOMETERS],
-        }
+        Some([ax, ay, bx, by])
     }
 }
 

@@ -68,7 +68,7 @@ pub fn rehearse() -> Option<Crash> {
     record::clear();
     if let Some(chip) = Peripherals::take() {
         let outputs = OutputPins::new(chip.GPIOC, chip.IWDG, chip.DBGMCU, &chip.RCC);
-        outputs.drive(Outputs {
+        OutputPins::drive(Outputs {
             run: true,
             no_brake: true,
             permit: false,

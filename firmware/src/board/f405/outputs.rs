@@ -11,7 +11,6 @@ use crate::board::silicon::OutputRegisters;
 /// The watchdog resets the core when good ticks stay away for 2 ms (1.3 to 3.8 ms over the tolerance of its oscillator, 17
 /// to 47 kHz: DS8626, LSI characteristics).
 pub struct OutputPins {
-    pins: GPIOC,
     watchdog: IWDG,
     debug: DBGMCU,
 }
@@ -20,42 +19,27 @@ impl OutputPins {
     /// All without current, the watchdog not started.
     pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
         rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
-        let outputs = Self {
-            pins,
-            watchdog,
-            debug,
-        };
-        outputs.drive(Outputs::SAFE);
+        Self::drive(Outputs::SAFE);
         // A broken wire reads as off.
-        outputs.pins.pupdr().modify(|_, w| w.pupdr4().pull_down());
-        outputs.pins.moder().modify(|_, w| {
+        pins.pupdr().modify(|_, w| w.pupdr4().pull_down());
+        pins.moder().modify(|_, w| {
             w.moder6().output().moder7().output();
             w.moder2().output().moder3().output()
         });
-        outputs
+        Self { watchdog, debug }
     }
 }
 
 impl OutputRegisters for OutputPins {
-    fn drive(&self, outputs: Outputs) {
-        // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
-        self.pins.bsrr().write(|w| {
-            drop_all(w)
-                .bs6()
-                .bit(outputs.run)
-                .bs7()
-                .bit(outputs.no_brake)
-                .bs2()
-                .bit(outputs.permit)
-                .bs3()
-                .bit(outputs.ready)
-        });
-    }
-
-    fn drop_now() {
+    fn drive(outputs: Outputs) {
         // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOC::ptr() };
-        pins.bsrr().write(drop_all);
+        // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
+        pins.bsrr().write(|w| {
+            w.br6().reset().br7().reset().br2().reset().br3().reset();
+            w.bs6().bit(outputs.run).bs7().bit(outputs.no_brake);
+            w.bs2().bit(outputs.permit).bs3().bit(outputs.ready)
+        });
     }
 
     fn start_watchdog(&self) {
@@ -72,10 +56,4 @@ impl OutputRegisters for OutputPins {
     fn feed(&self) {
         self.watchdog.kr().write(|w| w.key().feed());
     }
-}
-
-type Levels = stm32f4::stm32f405::gpioi::bsrr::W;
-
-fn drop_all(w: &mut Levels) -> &mut Levels {
-    w.br6().reset().br7().reset().br2().reset().br3().reset()
 }

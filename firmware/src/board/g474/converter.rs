@@ -7,7 +7,7 @@ use core::convert::Infallible;
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3, gpiob};
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::CHANNELS;
 
 use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
@@ -119,7 +119,7 @@ impl SampleSource for ExternalConverter {
         self.number.cnt().read().bits() as u16
     }
 
-    fn take(&mut self) -> Sample {
+    fn take(&mut self) -> Option<[u16; CHANNELS]> {
         self.edges.pr1().write(|w| w.pif0().clear_bit_by_one());
         self.adc.take(&mut Wait {})
     }

@@ -10,56 +10,44 @@ use crate::board::silicon::OutputRegisters;
 ///
 /// The watchdog resets the core when good ticks stay away for 2 ms of its oscillator.
 pub struct OutputPort {
-    pins: GPIOC,
     watchdog: IWDG,
     debug: DBGMCU,
 }
-
-/// RM0440, GPIOx_BSRR: the upper half resets.
-const DROP_ALL: u32 = (1 << 6 | 1 << 7 | 1 << 2 | 1 << 3) << 16;
 
 impl OutputPort {
     /// All without current, the watchdog not started.
     pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
         rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
-        let outputs = Self {
-            pins,
-            watchdog,
-            debug,
-        };
-        outputs.drive(Outputs::SAFE);
+        Self::drive(Outputs::SAFE);
         // SAFETY: pull-down is 2: a broken wire reads as off. An output is 1, an input 0; after reset all are analog.
         unsafe {
-            outputs.pins.pupdr().modify(|_, w| w.pupdr4().bits(2));
-            outputs.pins.moder().modify(|_, w| {
+            pins.pupdr().modify(|_, w| w.pupdr4().bits(2));
+            pins.moder().modify(|_, w| {
                 w.moder6().bits(1).moder7().bits(1);
                 w.moder2().bits(1).moder3().bits(1).moder4().bits(0)
             });
         }
-        outputs
+        Self { watchdog, debug }
     }
 }
 
 impl OutputRegisters for OutputPort {
-    fn drive(&self, outputs: Outputs) {
-        let levels = [
-            (outputs.run, 6),
-            (outputs.no_brake, 7),
-            (outputs.permit, 2),
-            (outputs.ready, 3),
-        ];
-        let set = levels.map(|(level, pin)| u32::from(level) << pin);
-        // SAFETY: where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
-        self.pins
-            .bsrr()
-            .write(|w| unsafe { w.bits(set.iter().fold(DROP_ALL, |all, it| all | it)) });
-    }
-
-    fn drop_now() {
+    fn drive(outputs: Outputs) {
         // SAFETY: a single write to a register that only sets and resets.
         let pins = unsafe { &*GPIOC::ptr() };
-        // SAFETY: likewise.
-        pins.bsrr().write(|w| unsafe { w.bits(DROP_ALL) });
+        // Where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
+        pins.bsrr().write(|w| {
+            w.br6()
+                .set_bit()
+                .br7()
+                .set_bit()
+                .br2()
+                .set_bit()
+                .br3()
+                .set_bit();
+            w.bs6().bit(outputs.run).bs7().bit(outputs.no_brake);
+            w.bs2().bit(outputs.permit).bs3().bit(outputs.ready)
+        });
     }
 
     fn start_watchdog(&self) {

@@ -17,7 +17,7 @@ use cortex_m::peripheral::{DWT, SCB};
 use defmt::error;
 use embedded_hal::delay::DelayNs;
 use touchdown_core::event::Notice;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
 use touchdown_protocol::wire::Incoming;
@@ -48,12 +48,9 @@ const LOG_SLOTS: usize = 42;
 
 /// Pins of the outputs, and the watchdog that makes them fail-safe against a stuck core.
 pub trait OutputRegisters {
-    /// Sets all levels at once.
-    fn drive(&self, outputs: Outputs);
-
-    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
-    /// top.
-    fn drop_now();
+    /// Sets all levels at once, whatever else the program holds: to take the current off is the first act of one that
+    /// stops, and of the guard on top.
+    fn drive(outputs: Outputs);
 
     /// Starts the watchdog: it resets the core, and so takes the current off the outputs, when good ticks stay away for
     /// 2 ms. It stands still while a debugger halts the core.
@@ -106,7 +103,7 @@ impl<C: Chip> Board for ChipBoard<C> {
     fn report(&mut self, _: &Notice) {}
 
     fn drive(&mut self, shown: Shown) {
-        self.outputs.drive(shown.outputs);
+        C::Outputs::drive(shown.outputs);
     }
 
     fn config(&self) -> &[u8] {
@@ -130,10 +127,14 @@ impl<C: Chip> Sampling<C> {
     /// Takes what was converted; whether the outputs must be safe now.
     fn take(&mut self) -> bool {
         let lost = self.overruns.tick(self.source.number());
+        let (spin, levitated) = (self.inputs.spin(), self.inputs.levitated());
+        let counts = self.source.take();
         let sample = Sample {
-            spin: self.inputs.spin(),
-            levitated: self.inputs.levitated(),
-            ..self.source.take()
+            counts: counts.unwrap_or_default(),
+            valid: if counts.is_some() { 0b1111 } else { 0 },
+            spin,
+            levitated,
+            edges: [None; TACHOMETERS],
         };
         let arrival = Incoming {
             sample,
@@ -195,7 +196,7 @@ impl<C: Chip> ChipTasks<C> {
     pub fn on_converted(&'static self) {
         self.sampled.store(DWT::cycle_count(), Ordering::Relaxed);
         if self.sampling.with(Sampling::take) == Some(true) {
-            C::Outputs::drop_now();
+            C::Outputs::drive(Outputs::SAFE);
         }
         SCB::set_pendsv();
     }

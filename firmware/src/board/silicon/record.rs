@@ -6,6 +6,7 @@ use core::panic::PanicInfo;
 use core::ptr::addr_of_mut;
 
 use cortex_m::peripheral::SCB;
+use touchdown_protocol::controller::Outputs;
 
 use super::{Chip, OutputRegisters as _};
 use crate::crash::{Cause, Crash, WORDS};
@@ -54,7 +55,7 @@ fn with_fault_status(crash: Crash) -> Crash {
 /// Takes the current off the outputs, leaves the record and resets.
 fn stop<C: Chip>(crash: impl FnOnce() -> Crash) -> ! {
     cortex_m::interrupt::disable();
-    C::Outputs::drop_now();
+    C::Outputs::drive(Outputs::SAFE);
     write(crash().encode());
     SCB::sys_reset()
 }
