@@ -24,20 +24,23 @@ pub const LONGEST_CONVERSION_NS: u32 = 4_150;
 const READS: u32 = LONGEST_CONVERSION_NS.div_ceil(100);
 
 /// The converter.
-pub struct Ad7606<S, B, R> {
+pub struct Ad7606<S, B> {
     spi: S,
     busy: B,
-    reset: R,
 }
 
-impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
+impl<S: SpiDevice, B: InputPin> Ad7606<S, B> {
     /// Resets the converter; `None` where its pin fails.
-    pub fn try_new(spi: S, busy: B, reset: R, delay: &mut impl DelayNs) -> Option<Self> {
-        let mut adc = Self { spi, busy, reset };
-        adc.reset.set_high().ok()?;
+    pub fn try_new(
+        spi: S,
+        busy: B,
+        mut reset: impl OutputPin,
+        delay: &mut impl DelayNs,
+    ) -> Option<Self> {
+        reset.set_high().ok()?;
         delay.delay_ns(RESET_NS);
-        adc.reset.set_low().ok()?;
-        Some(adc)
+        reset.set_low().ok()?;
+        Some(Self { spi, busy })
     }
 
     /// Waits for the end of the conversion, and reads it. Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one

@@ -19,8 +19,8 @@ use touchdown_protocol::controller::Shown;
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
-    /// Passes a notice on.
-    fn report(&mut self, notice: &Notice);
+    /// Passes a notice on, where the board has who wants it.
+    fn report(&mut self, _notice: &Notice) {}
 
     /// Drives the outputs, and may tell why; called every tick.
     fn drive(&mut self, shown: Shown);
@@ -28,8 +28,8 @@ pub trait Board {
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];
 
-    /// Feeds the watchdog; the last call of a tick that ran to its end.
-    fn feed(&mut self);
+    /// Feeds the watchdog, where there is one; the last call of a tick that ran to its end.
+    fn feed(&mut self) {}
 }
 
 /// What a board can do, which a configuration has to fit.

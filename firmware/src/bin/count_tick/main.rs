@@ -202,8 +202,6 @@ impl Board for Idle {
     fn config(&self) -> &[u8] {
         &self.0
     }
-
-    fn feed(&mut self) {}
 }
 
 /// All streams; with plants the one that typical ticks are taken from is enough.

@@ -57,7 +57,7 @@ impl OutputPin for PortBPin {
 
 /// Timer and converter.
 pub struct ExternalConverter {
-    adc: Ad7606<Bus<SelectedSpi>, PortBPin, PortBPin>,
+    adc: Ad7606<Bus<SelectedSpi>, PortBPin>,
     timer: TIM2,
     number: TIM3,
     edges: EXTI,

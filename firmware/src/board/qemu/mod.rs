@@ -108,9 +108,6 @@ impl Board for Emulated {
     fn config(&self) -> &[u8] {
         self.block.bytes()
     }
-
-    // No watchdog is emulated.
-    fn feed(&mut self) {}
 }
 
 /// What the sampling interrupt has.

@@ -16,7 +16,6 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::{DWT, SCB};
 use defmt::error;
 use embedded_hal::delay::DelayNs;
-use touchdown_core::event::Notice;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
@@ -100,8 +99,6 @@ pub struct ChipBoard<C: Chip> {
 }
 
 impl<C: Chip> Board for ChipBoard<C> {
-    fn report(&mut self, _: &Notice) {}
-
     fn drive(&mut self, shown: Shown) {
         C::Outputs::drive(shown.outputs);
     }
