@@ -25,10 +25,8 @@ pub struct Converter {
 impl Converter {
     /// Sets them up, stopped.
     pub fn new(
-        (x, y): (ADC1, ADC2),
-        common: &ADC_COMMON,
-        timer: TIM2,
-        number: TIM3,
+        (x, y, common): (ADC1, ADC2, &ADC_COMMON),
+        (timer, number): (TIM2, TIM3),
         pins: &GPIOA,
         rcc: &RCC,
     ) -> Self {

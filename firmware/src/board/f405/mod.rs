@@ -21,7 +21,7 @@ use self::inputs::PinInputs;
 use self::line::Port;
 use self::outputs::OutputPins;
 use super::default_settings;
-use super::silicon::{self, Bus, Chip, ChipParts, ChipTasks, ConfigFlash, Line};
+use super::silicon::{self, Bus, Chip, ChipParts, ChipPlatform, ChipTasks, ConfigFlash, Line};
 use super::silicon::{OutputRegisters as _, Started, record};
 use crate::crash::Crash;
 use crate::memory::Memory;
@@ -40,23 +40,19 @@ pub fn start(memory: &'static mut Memory) -> Started<F405> {
     // Since power was applied, or an order to clear was obeyed.
     let has_bitten = rcc.csr().read().wdgrstf().bit_is_set();
     let found = silicon::check::<F405>(default_settings(), has_bitten);
-    let source = Converter::new(
-        (chip.ADC1, chip.ADC2),
-        &chip.ADC_COMMON,
-        chip.TIM2,
-        chip.TIM3,
-        &chip.GPIOA,
-        rcc,
-    );
-    let line = Line::new(Port::new(chip.USART1, chip.DMA2, &chip.GPIOB, rcc));
+    let converters = (chip.ADC1, chip.ADC2, &chip.ADC_COMMON);
+    let source = Converter::new(converters, (chip.TIM2, chip.TIM3), &chip.GPIOA, rcc);
+    let port = Port::new(chip.USART1, chip.DMA2, &chip.GPIOB, rcc);
     let spi = Spi1::new(chip.SPI1, chip.GPIOA, &chip.GPIOB, rcc);
     let parts = ChipParts {
         outputs,
         source,
-        line,
-        log: silicon::mount::<F405>(Bus(spi)),
         inputs: PinInputs::wired(&found.1, chip.GPIOB, chip.TIM4, rcc),
-        chip: F405::new(chip.FLASH, chip.RCC, chip.RNG),
+        platform: ChipPlatform {
+            line: Line::new(port),
+            log: silicon::mount::<F405>(Bus(spi)),
+            chip: F405::new(chip.FLASH, chip.RCC, chip.RNG),
+        },
     };
     parts.start(memory, found, core, Interrupt::ADC)
 }

@@ -21,7 +21,7 @@ use self::line::ChannelPort;
 use self::outputs::OutputPort;
 use self::spi::SelectedSpi;
 use super::default_settings;
-use super::silicon::{self, Chip, ChipParts, ChipTasks, ConfigFlash, Line, Started};
+use super::silicon::{self, Chip, ChipParts, ChipPlatform, ChipTasks, ConfigFlash, Line, Started};
 use crate::memory::Memory;
 
 /// The rig by 16 bit over +-1000 um, where nothing is stored: there is never current.
@@ -47,22 +47,21 @@ pub fn start(memory: &'static mut Memory) -> Started<G474> {
     // Since power was applied, or an order to clear was obeyed.
     let has_bitten = rcc.csr().read().iwdgrstf().bit_is_set();
     let found = silicon::check::<G474>(fallback(), has_bitten);
-    let source = ExternalConverter::try_new(
-        spi::converter(chip.SPI1, &chip.GPIOA, rcc),
-        (chip.TIM2, chip.TIM3),
-        (&chip.GPIOA, &chip.GPIOB),
-        (chip.EXTI, &chip.SYSCFG),
-        rcc,
-    )?;
-    let bus = spi::flash(chip.SPI3, &chip.GPIOA, &chip.GPIOB, rcc);
+    let pins = (&chip.GPIOA, &chip.GPIOB);
+    let (timers, edges) = ((chip.TIM2, chip.TIM3), (chip.EXTI, &chip.SYSCFG));
+    let bus = spi::converter(chip.SPI1, pins.0, rcc);
+    let source = ExternalConverter::try_new(bus, timers, pins, edges, rcc)?;
+    let bus = spi::flash(chip.SPI3, pins, rcc);
     let port = ChannelPort::new(chip.USART1, chip.DMA1, &chip.DMAMUX, &chip.GPIOA, rcc);
     let parts = ChipParts {
         outputs,
         source,
-        log: silicon::mount::<G474>(bus),
-        line: Line::new(port),
         inputs: TimerInputs::wired(&found.1, chip.GPIOB, chip.TIM4, rcc),
-        chip: G474::new(chip.FLASH, chip.RCC, chip.RNG),
+        platform: ChipPlatform {
+            line: Line::new(port),
+            log: silicon::mount::<G474>(bus),
+            chip: G474::new(chip.FLASH, chip.RCC, chip.RNG),
+        },
     };
     parts.start(memory, found, core, Interrupt::EXTI0)
 }

@@ -37,7 +37,7 @@ pub fn converter(_: SPI1, pins: &GPIOA, rcc: &RCC) -> Bus<SelectedSpi> {
 }
 
 /// PB3 clock, PB4 in, PB5 out, PA15 select: mode 0 at 21 MHz.
-pub fn flash(_: SPI3, pins: &GPIOA, bus: &GPIOB, rcc: &RCC) -> Bus<SelectedSpi> {
+pub fn flash(_: SPI3, (pins, bus): (&GPIOA, &GPIOB), rcc: &RCC) -> Bus<SelectedSpi> {
     rcc.ahb2enr()
         .modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
     rcc.apb1enr1().modify(|_, w| w.spi3en().set_bit());

@@ -212,12 +212,8 @@ pub struct ChipParts<C: Chip> {
     pub source: C::Source,
     /// What comes with the positions.
     pub inputs: Inputs<C::Inputs>,
-    /// The line.
-    pub line: Line<C::Port>,
-    /// The log, where there is one.
-    pub log: Option<ChipLog<C>>,
     /// What the main loop has of it.
-    pub chip: C,
+    pub platform: ChipPlatform<C>,
 }
 
 /// What [`run`] runs.
@@ -232,7 +228,7 @@ impl<C: Chip> ChipParts<C> {
         mut core: Peripherals,
         interrupt: impl InterruptNumber,
     ) -> Started<C> {
-        let counters = self.log.as_ref().map(ChipLog::<C>::counters);
+        let counters = self.platform.log.as_ref().map(ChipLog::<C>::counters);
         let boot = counters.map_or(0, |it| it.boots);
         let outputs = self.outputs;
         let board = ChipBoard::<C> { outputs, block };
@@ -253,12 +249,7 @@ impl<C: Chip> ChipParts<C> {
             intake,
         });
         held::unmask(&mut core, interrupt);
-        let platform = ChipPlatform {
-            chip: self.chip,
-            line: self.line,
-            log: self.log,
-        };
-        Some((below, platform))
+        Some((below, self.platform))
     }
 }
 

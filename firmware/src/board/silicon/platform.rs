@@ -13,9 +13,12 @@ use crate::tick::TickTask;
 
 /// The chip, its line and the log.
 pub struct ChipPlatform<C: Chip> {
-    pub(super) chip: C,
-    pub(super) line: Line<C::Port>,
-    pub(super) log: Option<ChipLog<C>>,
+    /// The chip.
+    pub chip: C,
+    /// The line.
+    pub line: Line<C::Port>,
+    /// The log, where there is one.
+    pub log: Option<ChipLog<C>>,
 }
 
 impl<C: Chip> Platform for ChipPlatform<C> {
