@@ -29,12 +29,9 @@ pub struct Crash {
     pub place: u32,
     /// For a panic the CRC-32 of the file's name, for a fault the link register, else 0.
     pub detail: u32,
-    /// Of a fault what the core says of it (ARMv7-M, system control block), else 0. CFSR: usage, bus and memory faults.
-    pub configurable: u32,
-    /// HFSR.
-    pub hard: u32,
-    /// BFAR, where CFSR says that it holds; else 0.
-    pub address: u32,
+    /// Of a fault what the core says of it, else 0: CFSR, HFSR, and BFAR where CFSR says that it holds (ARMv7-M, system
+    /// control block).
+    pub status: [u32; 3],
 }
 
 impl Crash {
@@ -44,9 +41,7 @@ impl Crash {
             cause,
             place,
             detail,
-            configurable: 0,
-            hard: 0,
-            address: 0,
+            status: [0; 3],
         }
     }
 
@@ -58,34 +53,18 @@ impl Crash {
         Self::new(Cause::Panic, line, file)
     }
 
-    /// Record to words: magic, cause, place, detail, CFSR, HFSR, address, CRC-32 of these.
+    /// Record to words: magic, cause, place, detail, status, CRC-32 of these.
     pub fn encode(&self) -> [u32; WORDS] {
-        let mut words = [
-            MAGIC,
-            self.cause as u32,
-            self.place,
-            self.detail,
-            self.configurable,
-            self.hard,
-            self.address,
-            0,
-        ];
+        let mut words = [0; WORDS];
+        words[..4].copy_from_slice(&[MAGIC, self.cause as u32, self.place, self.detail]);
+        words[4..7].copy_from_slice(&self.status);
         words[WORDS - 1] = checksum(&words);
         words
     }
 
     /// Words to record; `None` for what is none, as after power-on.
     pub fn decode(words: &[u32; WORDS]) -> Option<Self> {
-        let [
-            magic,
-            cause,
-            place,
-            detail,
-            configurable,
-            hard,
-            address,
-            sum,
-        ] = *words;
+        let [magic, cause, place, detail, status @ .., sum] = *words;
         if magic != MAGIC || sum != checksum(words) {
             return None;
         }
@@ -93,9 +72,7 @@ impl Crash {
             cause: Cause::from_repr(u8::try_from(cause).ok()?)?,
             place,
             detail,
-            configurable,
-            hard,
-            address,
+            status,
         })
     }
 }
@@ -116,9 +93,7 @@ mod tests {
         cause: Cause::HardFault,
         place: 0x0800_1234,
         detail: 0x0800_0567,
-        configurable: 0x8200,
-        hard: 0x4000_0000,
-        address: 0x4002_3c00,
+        status: [0x8200, 0x4000_0000, 0x4002_3c00],
     };
 
     #[test]

@@ -80,8 +80,9 @@ fn shown(shown: Shown) {
 
 /// The record of a crash.
 pub fn crash(crash: &Crash) {
+    let [configurable, hard, address] = crash.status;
     error!(
         "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}; cfsr {=u32:#x}, hfsr {=u32:#x}, address {=u32:#x}",
-        crash.cause as u8, crash.place, crash.detail, crash.configurable, crash.hard, crash.address
+        crash.cause as u8, crash.place, crash.detail, configurable, hard, address
     );
 }

@@ -18,8 +18,8 @@ fn main() -> ! {
             left.cause as u8,
             left.place,
             left.detail,
-            left.configurable,
-            left.hard
+            left.status[0],
+            left.status[1]
         );
         semihosting::process::exit(0);
     }

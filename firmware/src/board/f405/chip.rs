@@ -28,12 +28,8 @@ impl Spi1 {
         pins.ospeedr()
             .modify(|_, w| w.ospeedr3().high_speed().ospeedr5().high_speed());
         pins.moder().modify(|_, w| {
-            w.moder3()
-                .alternate()
-                .moder4()
-                .alternate()
-                .moder5()
-                .alternate()
+            w.moder3().alternate().moder4().alternate();
+            w.moder5().alternate()
         });
         spi.cr1().write(|w| {
             w.mstr().master().br().div4();

@@ -19,7 +19,7 @@ use semihosting::io::Write as _;
 use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
-use touchdown_core::monitor::{Fingerprint, MonitorConfig};
+use touchdown_core::monitor::Fingerprint;
 use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
@@ -173,7 +173,12 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     };
     let mut files = Files::open()?;
     let head = files.replay.head().ok_or(Failure::Replay)?;
-    let abilities = abilities(&head.config);
+    // Those of a board that gives the samples of this configuration.
+    let abilities = Abilities {
+        sample_rate: head.config.detector.sample_rate,
+        full_scale: head.config.sensing.full_scale,
+        tachometers: head.config.tachometers.is_some(),
+    };
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);
     let counters = files.log.as_ref().map(FileLog::counters);
@@ -227,15 +232,6 @@ fn start_timer(timer: &TIM2, sample_rate: f32) {
     timer
         .arr()
         .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32));
-}
-
-/// Those of a board that gives the samples of this configuration.
-fn abilities(replayed: &MonitorConfig) -> Abilities {
-    Abilities {
-        sample_rate: replayed.detector.sample_rate,
-        full_scale: replayed.sensing.full_scale,
-        tachometers: replayed.tachometers.is_some(),
-    }
 }
 
 /// What is found: the configuration of the replay where none is stored.

@@ -44,10 +44,9 @@ fn with_fault_status(crash: Crash) -> Crash {
     let block = unsafe { &*SCB::PTR };
     let configurable = block.cfsr.read();
     let is_valid = configurable & BFARVALID != 0;
+    let address = if is_valid { block.bfar.read() } else { 0 };
     Crash {
-        configurable,
-        hard: block.hfsr.read(),
-        address: if is_valid { block.bfar.read() } else { 0 },
+        status: [configurable, block.hfsr.read(), address],
         ..crash
     }
 }
