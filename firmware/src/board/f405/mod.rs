@@ -127,14 +127,11 @@ impl ConfigFlash for F405 {
     const START: usize = 0x080e_0000;
     const BYTES: usize = 128 * 1024;
 
-    fn unlock(&self) {
+    fn program(&self, address: usize, bytes: [u8; 8]) {
         // RM0090, unlocking the flash control register.
         for key in [0x4567_0123, 0xcdef_89ab] {
             self.flash.keyr().write(|w| w.key().set(key));
         }
-    }
-
-    fn program(&self, address: usize, bytes: [u8; 8]) {
         for (index, word) in bytes.as_chunks().0.iter().enumerate() {
             // One word at a time, 16 us.
             self.flash
@@ -146,9 +143,6 @@ impl ConfigFlash for F405 {
             };
             while self.flash.sr().read().bsy().bit_is_set() {}
         }
-    }
-
-    fn lock(&self) {
         self.flash.cr().write(|w| w.lock().set_bit());
     }
 }

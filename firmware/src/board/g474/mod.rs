@@ -121,15 +121,12 @@ impl ConfigFlash for G474 {
     const START: usize = 0x0807_c000;
     const BYTES: usize = 16 * 1024;
 
-    fn unlock(&self) {
+    fn program(&self, address: usize, bytes: [u8; 8]) {
         // RM0440, unlocking the flash control register.
         for key in [0x4567_0123, 0xcdef_89ab] {
             // SAFETY: the keys.
             self.flash.keyr().write(|w| unsafe { w.bits(key) });
         }
-    }
-
-    fn program(&self, address: usize, bytes: [u8; 8]) {
         // SAFETY: bits of the register, as above.
         self.flash.sr().write(|w| unsafe { w.bits(ERRORS) });
         self.flash.cr().modify(|_, w| w.pg().set_bit());
@@ -142,9 +139,6 @@ impl ConfigFlash for G474 {
         }
         while self.flash.sr().read().bsy().bit_is_set() {}
         self.flash.cr().modify(|_, w| w.pg().clear_bit());
-    }
-
-    fn lock(&self) {
         self.flash.cr().modify(|_, w| w.lock().set_bit());
     }
 }

@@ -134,9 +134,8 @@ impl<C: Chip> Sampling<C> {
             edges: [None; TACHOMETERS],
         };
         let arrival = Incoming {
-            sample,
             service: self.inputs.service(),
-            clear: false,
+            ..sample.into()
         };
         self.intake.take(arrival, lost)
     }
