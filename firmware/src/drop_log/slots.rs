@@ -27,7 +27,6 @@ pub struct Slot {
 pub(super) struct SlotReader<'a, F>(pub(super) &'a mut F, pub(super) usize);
 
 impl<F: ReadNorFlash> SlotReader<'_, F> {
-    /// What it holds.
     pub(super) fn found(&mut self) -> Result<Slot, F::Error> {
         let marks = self.marks()?;
         let sequence = if marks.released { 0 } else { self.owner()? };
@@ -38,7 +37,6 @@ impl<F: ReadNorFlash> SlotReader<'_, F> {
         })
     }
 
-    /// Its marks.
     pub(super) fn marks(&mut self) -> Result<Marks, F::Error> {
         let mut bytes = [0; MARKS_BYTES];
         self.0.read(layout::marks(self.1), &mut bytes)?;

@@ -14,7 +14,6 @@ use crate::platform::SampleSource;
 /// (DS8626, pin definitions).
 const INPUTS: [[u8; 2]; 2] = [[4, 6], [5, 7]];
 
-/// Timer and converters.
 pub struct Converter {
     x: ADC1,
     y: ADC2,

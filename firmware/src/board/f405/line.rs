@@ -13,14 +13,12 @@ const CHANNEL: u8 = 4;
 /// USART_SR: transmission complete.
 const TC: u16 = 1 << 6;
 
-/// The port.
 pub struct Port {
     usart: USART1,
     dma: DMA2,
 }
 
 impl Port {
-    /// Sets it up.
     pub fn new(usart: USART1, dma: DMA2, pins: &GPIOB, rcc: &RCC) -> Self {
         rcc.ahb1enr()
             .modify(|_, w| w.gpioben().enabled().dma2en().enabled());

@@ -55,7 +55,6 @@ impl OutputPin for PortBPin {
     }
 }
 
-/// Timer and converter.
 pub struct ExternalConverter {
     adc: Ad7606<Bus<SelectedSpi>, PortBPin>,
     timer: TIM2,

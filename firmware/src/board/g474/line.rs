@@ -16,14 +16,12 @@ const FROM_MEMORY: u32 = 1 << 4;
 const CIRCULAR: u32 = 1 << 5;
 const UP: u32 = 1 << 7;
 
-/// The port.
 pub struct ChannelPort {
     usart: USART1,
     dma: DMA1,
 }
 
 impl ChannelPort {
-    /// Sets it up.
     pub fn new(usart: USART1, dma: DMA1, requests: &DMAMUX, pins: &GPIOA, rcc: &RCC) -> Self {
         rcc.ahb1enr()
             .modify(|_, w| w.dma1en().set_bit().dmamux1en().set_bit());

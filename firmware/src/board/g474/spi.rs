@@ -5,7 +5,6 @@ use stm32g4::stm32g474::{GPIOA, GPIOB, RCC, SPI1, SPI3, gpioa, spi1};
 use super::clocks::CORE_HZ;
 use crate::board::silicon::{Bus, CycleDelay, SpiRegisters};
 
-/// Waits by counting cycles.
 pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// A SPI and the pin of port A that selects its device.

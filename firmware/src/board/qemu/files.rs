@@ -27,7 +27,6 @@ pub struct Files {
 }
 
 impl Files {
-    /// Opens them.
     pub fn open() -> Result<Self, Failure> {
         let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
         let mut names = &arguments;

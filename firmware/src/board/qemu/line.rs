@@ -23,10 +23,8 @@ pub struct Wire {
 
 /// The end of the main loop.
 pub struct Line {
-    /// Bytes that came.
     pub came: Consumer<'static, u8>,
     goes: Producer<'static, u8>,
-    /// Frames that wait.
     pub out: Outgoing,
 }
 
@@ -90,7 +88,6 @@ impl Line {
         self.out.is_empty()
     }
 
-    /// Whether all has gone out.
     pub fn is_done(&self) -> bool {
         self.out.is_empty() && self.goes.is_empty()
     }

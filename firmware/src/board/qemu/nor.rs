@@ -18,7 +18,6 @@ const SECTOR_BYTES: usize = 4096;
 const PAGE_BYTES: usize = 256;
 const BYTES: usize = bytes_of(EMULATED_SLOTS);
 
-/// The file.
 pub struct NorFile(File);
 
 impl NorFile {

@@ -48,7 +48,6 @@ pub fn load<F: ConfigFlash>() -> Result<(InForce, Settings), BlockError> {
     }
 }
 
-/// Appends a block.
 pub fn store<F: ConfigFlash>(flash: &F, block: &[u8]) -> Result<(), Refusal> {
     let at = used::<F>();
     if at >= slots::<F>() || block.len() > BLOCK_BYTES {
