@@ -46,11 +46,13 @@ const PARTS: [&str; 9] = [
     "outputs",
 ];
 
-/// Counts everything and exits the emulator. The stack has no room for what it counts.
+/// What the stack has no room for: samples and application.
+type Memory = (recorder::Memory, MaybeUninit<App>);
+
+/// Counts everything and exits the emulator.
 #[entry]
 fn main() -> ! {
-    static mut SAMPLES: recorder::Memory = recorder::Memory::EMPTY;
-    static mut APP: MaybeUninit<App> = MaybeUninit::uninit();
+    static mut MEMORY: Memory = (recorder::Memory::EMPTY, MaybeUninit::uninit());
     let counter = Counter::take();
     let mut table = Table::create(c"tick.csv");
     if let Ok(mut file) = File::open(c"streams.bin") {
@@ -60,7 +62,7 @@ fn main() -> ! {
                 break;
             }
             let scene = Scene::described(bytes.map(f32::from_le_bytes));
-            let (Tally { calls, sum, worst }, notices) = whole(&counter, &scene, SAMPLES, APP);
+            let (Tally { calls, sum, worst }, notices) = whole(&counter, &scene, MEMORY);
             table.line(format_args!("tick|stream {k}|{calls}|{sum}|{worst}"));
             table.line(format_args!("notices|stream {k}|{notices}"));
         }
@@ -72,9 +74,9 @@ fn main() -> ! {
             let Tally { calls, sum, worst } = tally;
             table.line(format_args!("{part}|{name}|{calls}|{sum}|{worst}"));
         };
-        let (whole, notices) = whole(&counter, scene, SAMPLES, APP);
+        let (whole, notices) = whole(&counter, scene, MEMORY);
         write("tick", whole);
-        let parts = parts(&counter, scene, SAMPLES, APP);
+        let parts = parts(&counter, scene, MEMORY);
         for (part, tally) in PARTS.into_iter().zip(parts) {
             write(part, tally);
         }
@@ -91,12 +93,8 @@ unsafe fn HardFault(_: &ExceptionFrame) -> ! {
 
 // Frames of their own, here and below: the recorders of both do not fit the stack at once.
 #[inline(never)]
-fn whole(
-    counter: &Counter,
-    scene: &Scene,
-    samples: &mut recorder::Memory,
-    app: &mut MaybeUninit<App>,
-) -> (Tally, u32) {
+fn whole(counter: &Counter, scene: &Scene, memory: &mut Memory) -> (Tally, u32) {
+    let (samples, app) = memory;
     let app = application(scene, app);
     let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
@@ -116,12 +114,8 @@ fn whole(
 }
 
 #[inline(never)]
-fn parts(
-    counter: &Counter,
-    scene: &Scene,
-    samples: &mut recorder::Memory,
-    app: &mut MaybeUninit<App>,
-) -> [Tally; PARTS.len()] {
+fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS.len()] {
+    let (samples, app) = memory;
     let app = application(scene, app);
     let mut recorder = recorder(scene, samples);
     let mut board = board(scene);
