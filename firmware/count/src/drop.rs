@@ -5,7 +5,7 @@ use core::hint::black_box;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, RigidConfig, Solved, Start, Stepper, Touch};
 
-use super::Bench;
+use super::CountingRun;
 use touchdown_counter::Tally;
 
 /// Duration of the drop, us.
@@ -53,7 +53,7 @@ pub(super) fn config(step: u32) -> RigidConfig<f64> {
     }
 }
 
-impl Bench {
+impl CountingRun {
     /// Counts the drop by a model, whose rung and scheme are its `name`, in steps of so many us for `duration` us.
     pub(super) fn drop<R: Precision, M: Stepper<R>>(
         &mut self,

@@ -5,13 +5,13 @@ use core::hint::black_box;
 
 use touchdown_rotor::real::Real;
 
-use super::Bench;
+use super::CountingRun;
 use touchdown_counter::Tally;
 
 /// Arguments in a set.
 const ARGUMENTS: usize = 61;
 
-impl Bench {
+impl CountingRun {
     /// For comparison only: no number uses it.
     pub(super) fn own_sqrt(&mut self, number: &'static str) {
         self.number = number;

@@ -21,7 +21,7 @@ use touchdown_rotor::{Precision, Rigid};
 use drop::{STEPS, WHOLE, config};
 
 /// Who counts, and the kind of number that is counted: its format and whose functions, as a scene names them.
-struct Bench {
+struct CountingRun {
     counter: Counter,
     table: Table,
     number: &'static str,
@@ -29,23 +29,23 @@ struct Bench {
 
 #[entry]
 fn main() -> ! {
-    let mut bench = Bench {
+    let mut run = CountingRun {
         counter: Counter::take(),
         table: Table::create(c"counts.csv"),
         number: "",
     };
-    bench.of_number::<f32>("f32,libm");
-    bench.of_number::<Poly32>("f32,polynomial");
-    bench.of_number::<Micro32>("f32,micromath");
-    bench.of_number::<f64>("f64,libm");
-    bench.in_rings::<f32>("f32,libm");
-    bench.in_rings::<Poly32>("f32,polynomial");
-    bench.in_rings::<f64>("f64,libm");
-    bench.own_sqrt("f32,micromath");
+    run.of_number::<f32>("f32,libm");
+    run.of_number::<Poly32>("f32,polynomial");
+    run.of_number::<Micro32>("f32,micromath");
+    run.of_number::<f64>("f64,libm");
+    run.in_rings::<f32>("f32,libm");
+    run.in_rings::<Poly32>("f32,polynomial");
+    run.in_rings::<f64>("f64,libm");
+    run.own_sqrt("f32,micromath");
     process::exit(0)
 }
 
-impl Bench {
+impl CountingRun {
     /// The functions, and every model in the plane, in one kind of number.
     fn of_number<R: Precision>(&mut self, number: &'static str) {
         self.number = number;

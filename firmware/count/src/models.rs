@@ -6,7 +6,7 @@ use touchdown_models::{
 };
 use touchdown_rotor::Precision;
 
-use super::Bench;
+use super::CountingRun;
 use super::drop::{BEGIN, POSITION, STEPS, WHOLE, config};
 
 /// Steps of rung `hertz`, which refuses longer ones, us.
@@ -14,7 +14,7 @@ const SHORT_STEPS: [u32; 2] = [10, 100];
 /// Speed after a fall through the gap, m/s.
 const FASTEST: f64 = 0.0767;
 
-impl Bench {
+impl CountingRun {
     /// Counts the drops of those in the plane.
     pub(super) fn in_plane<R: Precision>(&mut self) {
         for step in STEPS {
