@@ -5,8 +5,7 @@ use core::hint::black_box;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, RigidConfig, Solved, Start, Stepper, Touch};
 
-use super::CountingRun;
-use touchdown_counter::Tally;
+use touchdown_counter::{Counter, Name, Table, Tally};
 
 /// Duration of the drop, us.
 pub(super) const WHOLE: u32 = 300_000;
@@ -19,25 +18,22 @@ const SPIN: f64 = -1_000.0 * core::f64::consts::PI;
 /// Start, m.
 pub(super) const POSITION: [f64; 2] = [20e-6, 0.0];
 
-/// What a step did: all of it in flight or in contact, or one flight, one stretch of contact or several motions were solved.
+/// What a step did.
 #[derive(Clone, Copy)]
 enum Class {
+    /// In flight from its start to its end.
     Flight,
+    /// In contact, likewise.
     Contact,
+    /// One flight was solved.
     Impact,
+    /// One stretch of contact was solved.
     Stretch,
+    /// More than one motion was solved.
     Several,
 }
 
 const NAMES: [&str; 5] = ["flight", "contact", "impact", "stretch", "several"];
-
-/// Steps of a class, and the motions solved in them.
-#[derive(Clone, Copy, Default)]
-struct Counts {
-    steps: Tally,
-    flights: u32,
-    stretches: u32,
-}
 
 pub(super) fn config(step: u32) -> RigidConfig<f64> {
     RigidConfig {
@@ -53,16 +49,30 @@ pub(super) fn config(step: u32) -> RigidConfig<f64> {
     }
 }
 
-impl CountingRun {
-    /// Counts the drop by a model, whose rung and scheme are its `name`, in steps of so many us for `duration` us.
-    pub(super) fn drop<R: Precision, M: Stepper<R>>(
-        &mut self,
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub(super) counter: &'a Counter,
+    pub(super) name: Name,
+    /// us.
+    pub(super) step: u32,
+    /// us.
+    pub(super) duration: u32,
+}
+
+/// Steps and solved motions by class.
+#[derive(Default)]
+pub(super) struct Counts {
+    steps: [Tally; 5],
+    flights: [u32; 5],
+    stretches: [u32; 5],
+}
+
+impl Run<'_> {
+    pub(super) fn of_model<R: Precision, M: Stepper<R>>(
+        &self,
         model: &M,
         scales: &Scales<f64>,
-        name: &str,
-        step: u32,
-        duration: u32,
-    ) {
+    ) -> Counts {
         let start = Start::Free {
             position: POSITION.map(|x| x / scales.length),
             velocity: [0.0; 2],
@@ -70,9 +80,9 @@ impl CountingRun {
         let mut state = model
             .start(&start.rounded(), R::lit(SPIN / scales.spin), |_| ())
             .expect("a valid start");
-        let mut classes = [Counts::default(); NAMES.len()];
+        let mut counts = Counts::default();
         let mut before = model.solved(&state);
-        for _ in 0..duration / step {
+        for _ in 0..self.duration / self.step {
             let (_, instructions) = self.counter.count(|| {
                 let state = black_box(&mut state);
                 model.step(state, |happening| {
@@ -85,21 +95,11 @@ impl CountingRun {
                 flights: after.flights.wrapping_sub(before.flights),
                 stretches: after.stretches.wrapping_sub(before.stretches),
             };
-            let class = class(solved, model.kinematics(&state).touch);
-            let counts = &mut classes[class as usize];
-            counts.steps.add(instructions);
-            counts.flights += solved.flights;
-            counts.stretches += solved.stretches;
+            let touch = model.kinematics(&state).touch;
+            counts.add(class(solved, touch), instructions, solved);
             before = after;
         }
-        let number = self.number;
-        for (class, counts) in NAMES.iter().zip(classes) {
-            let Tally { calls, sum, worst } = counts.steps;
-            let (flights, stretches) = (counts.flights, counts.stretches);
-            self.table.line(format_args!(
-                "drop,{name},{number},{step},{class},{calls},{flights},{stretches},{sum},{worst}"
-            ));
-        }
+        counts
     }
 }
 
@@ -110,5 +110,30 @@ fn class(solved: Solved, touch: Touch) -> Class {
         (1, 0) => Class::Impact,
         (0, 1) => Class::Stretch,
         _ => Class::Several,
+    }
+}
+
+impl Counts {
+    fn add(&mut self, class: Class, instructions: u32, solved: Solved) {
+        let index = class as usize;
+        self.steps[index].add(instructions);
+        self.flights[index] += solved.flights;
+        self.stretches[index] += solved.stretches;
+    }
+
+    pub(super) fn write(&self, table: &mut Table, rung: &str, scheme: &str, run: &Run) {
+        let Run {
+            name: Name { precision, math },
+            step,
+            ..
+        } = run;
+        for (index, class) in NAMES.iter().enumerate() {
+            let Tally { calls, sum, worst } = self.steps[index];
+            let (flights, stretches) = (self.flights[index], self.stretches[index]);
+            table.line(format_args!(
+                "drop,{rung},{scheme},{precision},{math},{step},{class},{calls},{flights},\
+                 {stretches},{sum},{worst}"
+            ));
+        }
     }
 }

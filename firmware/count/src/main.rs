@@ -14,49 +14,44 @@ use cortex_m_rt::{ExceptionFrame, entry, exception};
 use defmt_semihosting as _;
 use panic_probe as _;
 use semihosting::process;
-use touchdown_counter::{Counter, Table};
+use touchdown_counter::{Counter, Name, Table};
 use touchdown_rotor::real::{Micro32, Poly32};
 use touchdown_rotor::{Precision, Rigid};
 
-use drop::{STEPS, WHOLE, config};
-
-/// Who counts, and the kind of number that is counted: its format and whose functions, as a scene names them.
-struct CountingRun {
-    counter: Counter,
-    table: Table,
-    number: &'static str,
-}
+use drop::{Run, STEPS, WHOLE, config};
 
 #[entry]
 fn main() -> ! {
-    let mut run = CountingRun {
-        counter: Counter::take(),
-        table: Table::create(c"counts.csv"),
-        number: "",
-    };
-    run.of_number::<f32>("f32,libm");
-    run.of_number::<Poly32>("f32,polynomial");
-    run.of_number::<Micro32>("f32,micromath");
-    run.of_number::<f64>("f64,libm");
-    run.in_rings::<f32>("f32,libm");
-    run.in_rings::<Poly32>("f32,polynomial");
-    run.in_rings::<f64>("f64,libm");
-    run.own_sqrt("f32,micromath");
+    let counter = Counter::take();
+    let mut table = Table::create(c"counts.csv");
+    let (of, to) = (&counter, &mut table);
+    let name = |precision, math| Name { precision, math };
+    of_number::<f32>(of, to, name("f32", "libm"));
+    of_number::<Poly32>(of, to, name("f32", "polynomial"));
+    of_number::<Micro32>(of, to, name("f32", "micromath"));
+    of_number::<f64>(of, to, name("f64", "libm"));
+    models::in_rings::<f32>(of, to, name("f32", "libm"));
+    models::in_rings::<Poly32>(of, to, name("f32", "polynomial"));
+    models::in_rings::<f64>(of, to, name("f64", "libm"));
+    functions::own_sqrt(of, to);
     process::exit(0)
 }
 
-impl CountingRun {
-    /// The functions, and every model in the plane, in one kind of number.
-    fn of_number<R: Precision>(&mut self, number: &'static str) {
-        self.number = number;
-        self.functions::<R>();
-        for step in STEPS {
-            let rigid = Rigid::try_new(&config(step)).expect("a valid configuration");
-            let (model, scales) = (rigid.rounded(), rigid.scales());
-            self.drop::<R, _>(&model, scales, "rigid,launch", step, WHOLE);
-        }
-        self.in_plane::<R>();
+/// The functions, and every model in the plane, in one kind of number.
+fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+    functions::of_number::<R>(counter, table, name);
+    for step in STEPS {
+        let run = Run {
+            counter,
+            name,
+            step,
+            duration: WHOLE,
+        };
+        let rigid = Rigid::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&rigid.rounded(), rigid.scales())
+            .write(table, "rigid", "launch", &run);
     }
+    models::in_plane::<R>(counter, table, name);
 }
 
 // The runtime asks for an unsafe function; there is nothing unsafe in it.

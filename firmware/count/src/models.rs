@@ -6,51 +6,65 @@ use touchdown_models::{
 };
 use touchdown_rotor::Precision;
 
-use super::CountingRun;
-use super::drop::{BEGIN, POSITION, STEPS, WHOLE, config};
+use super::drop::{BEGIN, POSITION, Run, STEPS, WHOLE, config};
+use touchdown_counter::{Counter, Name, Table};
 
 /// Steps of rung `hertz`, which refuses longer ones, us.
 const SHORT_STEPS: [u32; 2] = [10, 100];
 /// Speed after a fall through the gap, m/s.
 const FASTEST: f64 = 0.0767;
 
-impl CountingRun {
-    /// Counts the drops of those in the plane.
-    pub(super) fn in_plane<R: Precision>(&mut self) {
-        for step in STEPS {
-            let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
-            let (model, scales) = (moreau.rounded(), moreau.scales());
-            self.drop::<R, _>(&model, scales, "moreau,midpoint", step, WHOLE);
-        }
-        for step in SHORT_STEPS {
-            self.hertz::<R, Euler>("hertz,euler", step);
-            self.hertz::<R, Verlet>("hertz,verlet", step);
-        }
+/// Counts the drops of those in the plane in one kind of number.
+pub(super) fn in_plane<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+    let with_step = |step| Run {
+        counter,
+        name,
+        step,
+        duration: WHOLE,
+    };
+    for step in STEPS {
+        let run = with_step(step);
+        let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&moreau.rounded(), moreau.scales())
+            .write(table, "moreau", "midpoint", &run);
     }
-
-    /// Counts the drops of those with rings of their own, in one kind of number.
-    pub(super) fn in_rings<R: Precision>(&mut self, number: &'static str) {
-        self.number = number;
-        for step in STEPS {
-            // Their start is their own: of these scales only the spin's counts.
-            let plane = Moreau::try_new(&config(step)).expect("a valid configuration");
-            let (whole, ends) = (support::<R>(step), ends::<R>(step));
-            self.drop::<R, _>(&whole, plane.scales(), "support,midpoint", step, BEGIN);
-            self.drop::<R, _>(&ends, plane.scales(), "two-plane,midpoint", step, BEGIN);
-        }
+    for step in SHORT_STEPS {
+        let run = with_step(step);
+        run.of_hertz::<R, Euler>(table, "euler");
+        run.of_hertz::<R, Verlet>(table, "verlet");
     }
+}
 
+/// Counts the drops of those with rings of their own, in one kind of number.
+pub(super) fn in_rings<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
+    for step in STEPS {
+        let run = Run {
+            counter,
+            name,
+            step,
+            duration: BEGIN,
+        };
+        // Their start is their own: of these scales only the spin's counts.
+        let plane = Moreau::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&support::<R>(step), plane.scales())
+            .write(table, "support", "midpoint", &run);
+        run.of_model::<R, _>(&ends::<R>(step), plane.scales())
+            .write(table, "two-plane", "midpoint", &run);
+    }
+}
+
+impl Run<'_> {
     /// Steel on steel.
-    fn hertz<R: Precision, S: Scheme>(&mut self, name: &str, step: u32) {
+    fn of_hertz<R: Precision, S: Scheme>(&self, table: &mut Table, scheme: &str) {
         let config = HertzConfig {
-            rigid: config(step),
+            rigid: config(self.step),
             materials: Materials::steel(),
             shape: Point,
             fastest: FASTEST,
         };
-        let hertz = Hertz::<f64, Point, S>::try_new(&config).expect("a valid configuration");
-        let model = hertz.rounded::<R, Point>();
-        self.drop::<R, _>(&model, hertz.scales(), name, step, WHOLE);
+        let model = Hertz::<f64, Point, S>::try_new(&config).expect("a valid configuration");
+        self.of_model::<R, _>(&model.rounded::<R, Point>(), model.scales())
+            .write(table, "hertz", scheme, self);
     }
 }
 

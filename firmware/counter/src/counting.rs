@@ -74,6 +74,15 @@ impl Tally {
     }
 }
 
+/// The number format and its functions, as a scene names them.
+#[derive(Clone, Copy)]
+pub struct Name {
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// Whose functions.
+    pub math: &'static str,
+}
+
 /// The file of counts.
 pub struct Table(File);
 

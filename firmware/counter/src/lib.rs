@@ -4,4 +4,4 @@
 #[cfg(target_os = "none")]
 mod counting;
 #[cfg(target_os = "none")]
-pub use counting::{Counter, Table, Tally};
+pub use counting::{Counter, Name, Table, Tally};
