@@ -11,7 +11,7 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::spi::SpiDevice;
-use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
+use touchdown_core::sample::CHANNELS;
 
 /// Fastest clock at 3.3 V, Hz: f_SCLK. G: 14.5 MHz, which is DS's for VDRIVE above 2.7 V; its 17 MHz are for above
 /// 3.3 V, which a supply of 3.3 V is not.
@@ -24,37 +24,28 @@ pub const LONGEST_CONVERSION_NS: u32 = 4_150;
 const READS: u32 = LONGEST_CONVERSION_NS.div_ceil(100);
 
 /// The converter.
-pub struct Ad7606<S, B, R> {
+pub struct Ad7606<S, B> {
     spi: S,
     busy: B,
-    reset: R,
 }
 
-impl<S: SpiDevice, B: InputPin, R: OutputPin> Ad7606<S, B, R> {
+impl<S: SpiDevice, B: InputPin> Ad7606<S, B> {
     /// Resets the converter; `None` where its pin fails.
-    pub fn try_new(spi: S, busy: B, reset: R, delay: &mut impl DelayNs) -> Option<Self> {
-        let mut adc = Self { spi, busy, reset };
-        adc.reset.set_high().ok()?;
+    pub fn try_new(
+        spi: S,
+        busy: B,
+        mut reset: impl OutputPin,
+        delay: &mut impl DelayNs,
+    ) -> Option<Self> {
+        reset.set_high().ok()?;
         delay.delay_ns(RESET_NS);
-        adc.reset.set_low().ok()?;
-        Some(adc)
+        reset.set_low().ok()?;
+        Some(Self { spi, busy })
     }
 
-    /// Waits for the end of the conversion, and reads it. A converter that fails gives a sample without valid channels.
-    pub fn take(&mut self, delay: &mut impl DelayNs) -> Sample {
-        let codes = self.codes(delay);
-        Sample {
-            counts: codes.unwrap_or([0; CHANNELS]),
-            valid: if codes.is_some() { 0b1111 } else { 0 },
-            spin: None,
-            levitated: None,
-            edges: [None; TACHOMETERS],
-        }
-    }
-
-    /// Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one count. `None` where a pin or the SPI fails, or BUSY
-    /// does not go low in time.
-    fn codes(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
+    /// Waits for the end of the conversion, and reads it. Offset binary: 0 for -10 V, 32768 for 0 V, 65535 for +10 V less one
+    /// count. `None` where a pin or the SPI fails, or BUSY does not go low in time.
+    pub fn take(&mut self, delay: &mut impl DelayNs) -> Option<[u16; CHANNELS]> {
         let mut reads = 0;
         while self.busy.is_high().ok()? {
             reads += 1;

@@ -29,61 +29,42 @@ pub struct Crash {
     pub place: u32,
     /// For a panic the CRC-32 of the file's name, for a fault the link register, else 0.
     pub detail: u32,
-    /// Of a fault, what the core says of it.
-    pub status: FaultStatus,
-}
-
-/// Registers of the core after a fault: ARMv7-M, system control block.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FaultStatus {
-    /// CFSR: usage, bus and memory faults.
-    pub configurable: u32,
-    /// HFSR.
-    pub hard: u32,
-    /// BFAR, where CFSR says that it holds; else 0.
-    pub address: u32,
+    /// Of a fault what the core says of it, else 0: CFSR, HFSR, and BFAR where CFSR says that it holds (ARMv7-M, system
+    /// control block).
+    pub status: [u32; 3],
 }
 
 impl Crash {
-    /// A panic.
-    pub fn of_panic(info: &PanicInfo) -> Self {
-        let place = info.location();
+    /// Of which the core says nothing.
+    pub fn new(cause: Cause, place: u32, detail: u32) -> Self {
         Self {
-            cause: Cause::Panic,
-            place: place.map_or(0, |place| place.line()),
-            detail: place.map_or(0, |place| CRC.checksum(place.file().as_bytes())),
-            status: FaultStatus::default(),
+            cause,
+            place,
+            detail,
+            status: [0; 3],
         }
     }
 
-    /// Record to words: magic, cause, place, detail, CFSR, HFSR, address, CRC-32 of these.
+    /// A panic.
+    pub fn of_panic(info: &PanicInfo) -> Self {
+        let (line, file) = info.location().map_or((0, 0), |place| {
+            (place.line(), CRC.checksum(place.file().as_bytes()))
+        });
+        Self::new(Cause::Panic, line, file)
+    }
+
+    /// Record to words: magic, cause, place, detail, status, CRC-32 of these.
     pub fn encode(&self) -> [u32; WORDS] {
-        let mut words = [
-            MAGIC,
-            self.cause as u32,
-            self.place,
-            self.detail,
-            self.status.configurable,
-            self.status.hard,
-            self.status.address,
-            0,
-        ];
+        let mut words = [0; WORDS];
+        words[..4].copy_from_slice(&[MAGIC, self.cause as u32, self.place, self.detail]);
+        words[4..7].copy_from_slice(&self.status);
         words[WORDS - 1] = checksum(&words);
         words
     }
 
     /// Words to record; `None` for what is none, as after power-on.
     pub fn decode(words: &[u32; WORDS]) -> Option<Self> {
-        let [
-            magic,
-            cause,
-            place,
-            detail,
-            configurable,
-            hard,
-            address,
-            sum,
-        ] = *words;
+        let [magic, cause, place, detail, status @ .., sum] = *words;
         if magic != MAGIC || sum != checksum(words) {
             return None;
         }
@@ -91,11 +72,7 @@ impl Crash {
             cause: Cause::from_repr(u8::try_from(cause).ok()?)?,
             place,
             detail,
-            status: FaultStatus {
-                configurable,
-                hard,
-                address,
-            },
+            status,
         })
     }
 }
@@ -116,11 +93,7 @@ mod tests {
         cause: Cause::HardFault,
         place: 0x0800_1234,
         detail: 0x0800_0567,
-        status: FaultStatus {
-            configurable: 0x8200,
-            hard: 0x4000_0000,
-            address: 0x4002_3c00,
-        },
+        status: [0x8200, 0x4000_0000, 0x4002_3c00],
     };
 
     #[test]

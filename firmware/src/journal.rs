@@ -1,9 +1,9 @@
 //! What the images log.
 
-use defmt::{Str, error, info, intern, warn};
-use touchdown_core::event::{EventKind, Notice};
+use defmt::{error, info, warn};
+use touchdown_core::event::Notice;
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_protocol::controller::{Cause, Fault, Shown};
+use touchdown_protocol::controller::{Cause, Shown};
 
 use crate::crash::Crash;
 use crate::platform::JournalEntry;
@@ -32,9 +32,9 @@ pub fn entry(entry: &JournalEntry<'_>) {
 fn notice(notice: &Notice) {
     match *notice {
         Notice::Declared(event) => info!(
-            "event {=u16}: {=istr}, declared at sample {=u64}",
+            "event {=u16}: {=str}, declared at sample {=u64}",
             event.number,
-            name(event.kind),
+            <&str>::from(event.kind),
             event.declared
         ),
         Notice::Confirmed { number, sample } => {
@@ -78,37 +78,11 @@ fn shown(shown: Shown) {
     );
 }
 
-/// A fault that was found at power-on.
-pub fn found(fault: Fault) {
-    error!("power-on: fault {=u8}", fault as u8);
-}
-
 /// The record of a crash.
 pub fn crash(crash: &Crash) {
-    let status = &crash.status;
+    let [configurable, hard, address] = crash.status;
     error!(
         "crash: cause {=u8}, at {=u32:#x}, {=u32:#x}; cfsr {=u32:#x}, hfsr {=u32:#x}, address {=u32:#x}",
-        crash.cause as u8,
-        crash.place,
-        crash.detail,
-        status.configurable,
-        status.hard,
-        status.address
+        crash.cause as u8, crash.place, crash.detail, configurable, hard, address
     );
-}
-
-fn name(kind: EventKind) -> Str {
-    match kind {
-        EventKind::FreeFall => intern!("free fall"),
-        EventKind::Impact => intern!("impact"),
-        EventKind::Sliding => intern!("sliding"),
-        EventKind::Rolling => intern!("rolling"),
-        EventKind::Pendulum => intern!("pendulum"),
-        EventKind::ForwardWhirl => intern!("forward whirl"),
-        EventKind::BackwardWhirl => intern!("backward whirl"),
-        EventKind::LiftOff => intern!("lift-off"),
-        EventKind::Rest => intern!("rest"),
-        EventKind::Levitated => intern!("levitated"),
-        EventKind::SensorFault => intern!("sensor fault"),
-    }
 }

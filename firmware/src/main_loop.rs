@@ -2,7 +2,7 @@
 
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
-use touchdown_protocol::config_block::{Block, Key, Settings};
+use touchdown_protocol::config_block::{Block, Settings};
 use touchdown_protocol::controller::{Faults, Shown};
 use touchdown_protocol::link::{Device, Log, Recent, Refusal, Server, State};
 
@@ -33,10 +33,11 @@ struct Link {
 }
 
 impl MainLoop {
-    /// Obeys who has `key`.
-    pub fn new(key: Option<Key>, sample_rate: f32, forecast: ForecastTask) -> Self {
+    /// Obeys who has the key of `settings`.
+    pub fn new(settings: &Settings, forecast: ForecastTask) -> Self {
+        let rate = settings.monitor.detector.sample_rate;
         Self {
-            server: Server::new(env!("CARGO_PKG_VERSION"), sample_rate, key),
+            server: Server::new(env!("CARGO_PKG_VERSION"), rate, settings.key),
             forecast,
             told: (Shown::default(), Faults::NONE),
             sliced: 0,

@@ -14,6 +14,7 @@ use touchdown_rotor::error::ConfigError;
 use crate::app::App;
 use crate::board::Board;
 use crate::intake::{Intake, Ring};
+use crate::main_loop::MainLoop;
 use crate::recorder::{self, Recorder};
 use crate::tick::{Outbox, TickTask};
 
@@ -39,21 +40,22 @@ impl Memory {
         }
     }
 
-    /// What takes a sample as it comes, and the task that does the rest; `found` is what was wrong at power-on, which was
-    /// number `boot`.
+    /// What takes a sample as it comes, the task that does the rest, and the main loop below it; `found` is what was wrong
+    /// at power-on, which was number `boot`.
     pub fn fill<B: Board>(
         &'static mut self,
         settings: &Settings,
         found: Faults,
         boot: u32,
         board: B,
-    ) -> Result<(Intake<'static>, TickTask<'static, B>), ConfigError> {
+    ) -> Result<(Intake<'static>, TickTask<'static, B>, MainLoop), ConfigError> {
         let app = application(&mut self.app, &settings.monitor, found)?;
         let (place, samples) = (&mut self.recorder, &mut self.samples);
         let recorder = recorder(place, samples, settings, board.config(), boot);
         let (intake, waiting) = self.ring.split(&settings.monitor)?;
         let tick = TickTask::new(app, recorder, board, &mut self.outbox, waiting);
-        Ok((intake, tick))
+        let forecast = forecast_task(&settings.monitor)?;
+        Ok((intake, tick, MainLoop::new(settings, forecast)))
     }
 }
 

@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::MultiwriteNorFlash;
 use touchdown_core::event::Notice;
 use touchdown_core::forecast::ForecastTask;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::CHANNELS;
 use touchdown_protocol::controller::{Cause, Faults, Shown};
 use touchdown_protocol::link::{Frame, Log, Refusal};
 use touchdown_protocol::log::block;
@@ -57,7 +57,9 @@ pub trait Platform {
     }
 
     /// What nobody can know before; 0 without a source of it.
-    fn unknown(&mut self) -> u64;
+    fn unknown(&mut self) -> u64 {
+        0
+    }
 
     /// Forgets why it was reset, where that is kept: an order to clear was obeyed.
     fn forget_reset(&mut self) {}
@@ -82,11 +84,14 @@ pub trait Platform {
 
 /// Where samples come from: a converter of the chip's own, or one on a bus.
 pub trait SampleSource {
+    /// Starts sampling.
+    fn start(&self);
+
     /// Number of the newest sample that has begun, modulo 2^16, as hardware counts.
     fn number(&self) -> u16;
 
-    /// The sample that was just converted.
-    fn take(&mut self) -> Sample;
+    /// What was just converted; none where the converter fails.
+    fn take(&mut self) -> Option<[u16; CHANNELS]>;
 }
 
 /// Of a board's journal.

@@ -1,5 +1,6 @@
 //! What is checked at power-on, the same on every board, and what follows from it.
 
+use defmt::error;
 use touchdown_protocol::config_block::{self, Block, BlockError, Settings};
 use touchdown_protocol::controller::{Fault, Faults};
 
@@ -48,7 +49,7 @@ impl PowerOn {
         let mut found = Faults::NONE;
         let mut find = |fault, is_so| {
             if is_so {
-                journal::found(fault);
+                error!("power-on: fault {=u8}", fault as u8);
                 found = found.with(fault);
             }
         };

@@ -19,7 +19,7 @@ fn levels(states: &[State]) -> Vec<Level> {
 }
 
 /// Runs one sample; `busy` is what the pin shows, `bytes` what the bus gives, if it is read.
-fn sample(busy: &[State], bytes: Option<[u8; 8]>) -> touchdown_core::sample::Sample {
+fn sample(busy: &[State], bytes: Option<[u8; 8]>) -> Option<[u16; 4]> {
     let spi: Vec<Transaction<u8>> = bytes.map_or(vec![], |bytes| {
         vec![
             Transaction::transaction_start(),
@@ -43,14 +43,13 @@ fn sample(busy: &[State], bytes: Option<[u8; 8]>) -> touchdown_core::sample::Sam
 fn sample_is_read_when_the_conversion_is_over() {
     let bytes = [0x80, 0x00, 0xff, 0xff, 0x00, 0x00, 0x7f, 0xff];
     let sample = sample(&[State::High, State::High, State::Low], Some(bytes));
-    assert_eq!(sample.counts, [0, 32_767, 32_768, 65_535]);
-    assert_eq!(sample.valid, 0b1111);
+    assert_eq!(sample, Some([0, 32_767, 32_768, 65_535]));
 }
 
 #[test]
 fn converter_that_stays_busy_gives_no_valid_channel_and_does_not_block() {
     let sample = sample(&[State::High; 43], None);
-    assert_eq!(sample.valid, 0);
+    assert_eq!(sample, None);
 }
 
 /// A converter on a clock that only delays move: pins and bus take no time, which is the worst for who must wait.

@@ -1,4 +1,4 @@
-//! Writes into an image what it checks itself by at power-on: `firmware/src/board/image.rs`.
+//! Writes into an image what it checks itself by at power-on: `firmware/src/board/silicon/image.rs`.
 
 use std::fs;
 use std::path::Path;

@@ -5,8 +5,7 @@ use core::hint::black_box;
 use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, RigidConfig, Solved, Start, Stepper, Touch};
 
-use touchdown_counter::counter::Counter;
-use touchdown_counter::table::{Name, Table, Tally};
+use touchdown_counter::{Counter, Name, Table, Tally};
 
 /// Duration of the drop, us.
 pub(super) const WHOLE: u32 = 300_000;

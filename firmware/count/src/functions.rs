@@ -5,8 +5,7 @@ use core::hint::black_box;
 
 use touchdown_rotor::real::Real;
 
-use touchdown_counter::counter::Counter;
-use touchdown_counter::table::{Name, Table, Tally};
+use touchdown_counter::{Counter, Name, Table, Tally};
 
 /// Arguments in a set.
 const ARGUMENTS: usize = 61;

@@ -14,8 +14,7 @@ use cortex_m_rt::{ExceptionFrame, entry, exception};
 use defmt_semihosting as _;
 use panic_probe as _;
 use semihosting::process;
-use touchdown_counter::counter::Counter;
-use touchdown_counter::table::{COMPILER, Name, Table};
+use touchdown_counter::{Counter, Name, Table};
 use touchdown_rotor::real::{Micro32, Poly32};
 use touchdown_rotor::{Precision, Rigid};
 
@@ -25,7 +24,6 @@ use drop::{Run, STEPS, WHOLE, config};
 fn main() -> ! {
     let counter = Counter::take();
     let mut table = Table::create(c"counts.csv");
-    table.line(format_args!("compiler,{}", COMPILER));
     let (of, to) = (&counter, &mut table);
     let name = |precision, math| Name { precision, math };
     of_number::<f32>(of, to, name("f32", "libm"));

@@ -7,8 +7,7 @@ use touchdown_models::{
 use touchdown_rotor::Precision;
 
 use super::drop::{BEGIN, POSITION, Run, STEPS, WHOLE, config};
-use touchdown_counter::counter::Counter;
-use touchdown_counter::table::{Name, Table};
+use touchdown_counter::{Counter, Name, Table};
 
 /// Steps of rung `hertz`, which refuses longer ones, us.
 const SHORT_STEPS: [u32; 2] = [10, 100];

@@ -2,6 +2,6 @@
 //! Counts instructions on the target, and writes the counts to a file of the desktop.
 
 #[cfg(target_os = "none")]
-pub mod counter;
+mod counting;
 #[cfg(target_os = "none")]
-pub mod table;
+pub use counting::{Counter, Name, Table, Tally};

@@ -8,7 +8,6 @@ use defmt_semihosting as _;
 use semihosting::experimental::env;
 use stm32f4::stm32f405::{Interrupt, NVIC, interrupt};
 use touchdown_firmware::board::f405;
-use touchdown_firmware::board::silicon::Chip as _;
 
 /// Exit status: 0 told of a crash, 2 nothing to do.
 #[entry]
@@ -19,8 +18,8 @@ fn main() -> ! {
             left.cause as u8,
             left.place,
             left.detail,
-            left.status.configurable,
-            left.status.hard
+            left.status[0],
+            left.status[1]
         );
         semihosting::process::exit(0);
     }
@@ -57,7 +56,7 @@ fn deeper(depth: u32) -> u32 {
     }
 }
 
-touchdown_firmware::last_acts!(f405::F405::drop_outputs);
+touchdown_firmware::last_acts!(f405::F405);
 
 #[interrupt]
 fn ADC() {}

@@ -6,7 +6,8 @@ use cortex_m_rt::{ExceptionFrame, entry, exception};
 use defmt_semihosting as _;
 use panic_probe as _;
 use stm32f4::stm32f405::interrupt;
-use touchdown_firmware::board::qemu::{self, Memory};
+use touchdown_firmware::board::qemu;
+use touchdown_firmware::memory::Memory;
 
 #[entry]
 fn main() -> ! {

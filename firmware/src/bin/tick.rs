@@ -3,13 +3,11 @@
 //! What interrupts and link can reach: sampling, tick and main loop, with recorder, drop log and flash driver, over registers of no
 //! chip. Linked to be looked at, never run. A panic handler or soft-float f64 among its symbols is reachable: `cargo xtask budget`.
 
-use core::convert::Infallible;
 use core::panic::PanicInfo;
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use touchdown_core::event::Notice;
 use touchdown_core::sample::Sample;
+use touchdown_firmware::board::silicon::{Bus, CycleDelay, SpiRegisters};
 use touchdown_firmware::board::{Abilities, Board};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::intake::Intake;
@@ -82,41 +80,31 @@ mod plants {
 /// Registers of flash.
 struct BareSpi;
 
-impl ErrorType for BareSpi {
-    type Error = Infallible;
-}
+impl SpiRegisters for BareSpi {
+    type Wait = CycleDelay<168>;
 
-impl SpiDevice for BareSpi {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        for operation in operations {
-            match operation {
-                Operation::Read(bytes) => bytes.iter_mut().for_each(|it| *it = read()),
-                Operation::Write(bytes) => {
-                    #[cfg(feature = "plants")]
-                    plants::in_flash(bytes);
-                    bytes.iter().for_each(|it| write(*it));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
+    fn select(&mut self, is_on: bool) {
+        write(is_on.into());
+    }
+
+    fn exchange(&mut self, byte: u8) -> u8 {
+        #[cfg(feature = "plants")]
+        plants::in_flash(&[byte]);
+        write(byte);
+        read()
     }
 }
 
-impl DelayNs for BareSpi {
-    fn delay_ns(&mut self, _: u32) {
-        write(0);
-    }
-}
+type BareLog = DropLog<W25q<Bus<BareSpi>, CycleDelay<168>>, 42>;
 
 struct BarePlatform {
     tick: TickTask<'static, Bare>,
-    log: Option<DropLog<W25q<BareSpi, BareSpi>, 42>>,
+    log: Option<BareLog>,
 }
 
 impl Platform for BarePlatform {
     type Board = Bare;
-    type Log = DropLog<W25q<BareSpi, BareSpi>, 42>;
+    type Log = BareLog;
 
     fn abilities(&self) -> Abilities {
         Abilities {
@@ -148,7 +136,7 @@ impl Platform for BarePlatform {
         read() > 0
     }
 
-    fn log(&mut self) -> &mut Option<Self::Log> {
+    fn log(&mut self) -> &mut Option<BareLog> {
         &mut self.log
     }
 

@@ -1,29 +1,13 @@
 //! What the application asks of a board, and the boards: the only place with registers.
 
-#[cfg(target_os = "none")]
-mod bus;
-#[cfg(target_os = "none")]
-mod chip_platform;
 #[cfg(all(target_os = "none", feature = "f405"))]
 pub mod f405;
 #[cfg(all(target_os = "none", feature = "g474"))]
 pub mod g474;
-#[cfg(target_os = "none")]
-mod held;
-#[cfg(target_os = "none")]
-mod image;
-#[cfg(target_os = "none")]
-mod inputs;
-#[cfg(target_os = "none")]
-mod line;
 #[cfg(all(target_os = "none", feature = "f405"))]
 pub mod qemu;
 #[cfg(target_os = "none")]
-pub mod record;
-#[cfg(target_os = "none")]
 pub mod silicon;
-#[cfg(target_os = "none")]
-mod slots;
 
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
@@ -35,8 +19,8 @@ use touchdown_protocol::controller::Shown;
 
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
-    /// Passes a notice on.
-    fn report(&mut self, notice: &Notice);
+    /// Passes a notice on, where the board has who wants it.
+    fn report(&mut self, _notice: &Notice) {}
 
     /// Drives the outputs, and may tell why; called every tick.
     fn drive(&mut self, shown: Shown);
@@ -44,8 +28,8 @@ pub trait Board {
     /// The configuration block in force, where it is kept.
     fn config(&self) -> &[u8];
 
-    /// Feeds the watchdog; the last call of a tick that ran to its end.
-    fn feed(&mut self);
+    /// Feeds the watchdog, where there is one; the last call of a tick that ran to its end.
+    fn feed(&mut self) {}
 }
 
 /// What a board can do, which a configuration has to fit.

@@ -12,7 +12,7 @@ const COPIES: u8 = 2;
 
 #[derive(Clone, Debug)]
 pub(super) struct Ledger {
-    counters: Counters,
+    pub(super) counters: Counters,
     sector: u32,
     /// First free cell of the sector.
     cell: u32,
@@ -50,10 +50,6 @@ impl Ledger {
             }
         }
         Ok(ledger)
-    }
-
-    pub(super) fn counters(&self) -> &Counters {
-        &self.counters
     }
 
     pub(super) fn update(&mut self, change: impl FnOnce(&mut Counters)) {

@@ -20,7 +20,7 @@ use self::layout::{BLOCKS_PER_SLOT, SECTOR_BYTES, SECTORS_PER_SLOT};
 pub use self::layout::{EPISODE_BYTES, bytes_of};
 use self::ledger::Ledger;
 pub use self::slots::Slot;
-use self::slots::{SlotReader, Slots};
+use self::slots::SlotReader;
 use crate::recorder::Counted;
 
 /// Slots that must stay unlocked: one to write to, one to erase meanwhile, one to keep.
@@ -28,7 +28,7 @@ const LEAST_UNLOCKED: usize = 3;
 
 /// The lifetime counters of the log in `flash`, as [`DropLog::mount`] finds them, before it counts anything itself.
 pub fn counters<F: ReadNorFlash>(flash: &mut F) -> Result<Counters, F::Error> {
-    Ok(*Ledger::mount(flash)?.counters())
+    Ok(Ledger::mount(flash)?.counters)
 }
 
 /// What is in slot `slot` of the log in `flash`, as [`DropLog::mount`] finds it.
@@ -53,7 +53,7 @@ enum State {
 pub struct DropLog<F, const SLOTS: usize> {
     flash: F,
     ledger: Ledger,
-    slots: Slots<SLOTS>,
+    slots: [Slot; SLOTS],
     state: State,
     /// Lost drops and touches since reset that are counted in.
     counted: Counted,
@@ -70,9 +70,13 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
             assert!(SLOTS >= LEAST_UNLOCKED);
         }
         let mut ledger = Ledger::mount(&mut flash)?;
-        let slots = Slots::mount(&mut flash)?;
-        let counted = ledger.counters().episodes;
-        for (slot, sequence) in slots.after(counted) {
+        let mut slots = [Slot::default(); SLOTS];
+        for (number, slot) in slots.iter_mut().enumerate() {
+            *slot = SlotReader(&mut flash, number).found()?;
+        }
+        let counted = ledger.counters.episodes;
+        let numbered = slots.iter().map(|it| it.sequence).enumerate();
+        for (slot, sequence) in numbered.filter(|&(_, it)| it > counted) {
             let mut found = SlotReader(&mut flash, slot);
             let ending = found.ending(sequence)?;
             // Power went before it was counted, maybe before the trip was noted.
@@ -129,12 +133,32 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
 
     /// The lifetime counters; the flash has them after the next few calls of [`Self::work`].
     pub fn counters(&self) -> &Counters {
-        self.ledger.counters()
+        &self.ledger.counters
     }
 
     /// Number of each episode and whether it is locked, in no order.
     pub fn slots(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
-        self.slots.episodes()
+        let used = self.slots.iter().filter(|slot| slot.sequence != 0);
+        used.map(|slot| (slot.sequence, slot.locked))
+    }
+
+    fn slot(&self, number: usize) -> Slot {
+        self.slots.get(number).copied().unwrap_or_default()
+    }
+
+    fn set_slot(&mut self, number: usize, sequence: u32, locked: bool) {
+        if let Some(slot) = self.slots.get_mut(number) {
+            *slot = Slot {
+                sequence,
+                locked,
+                released: false,
+            };
+        }
+    }
+
+    fn find(&self, episode: u32) -> Option<usize> {
+        let mut slots = self.slots.iter();
+        slots.position(|slot| slot.sequence == episode && episode != 0)
     }
 
     /// Counts in what happened since reset. A rub touches once a turn: touches are written when they are an eighth more
@@ -169,7 +193,7 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
     /// Number of each episode that is not being written, in no order.
     fn written(&self) -> impl Iterator<Item = u32> + '_ {
         let open = match self.state {
-            State::Writing { slot, .. } => self.slots.get(slot).sequence,
+            State::Writing { slot, .. } => self.slot(slot).sequence,
             _ => 0,
         };
         let numbers = self.slots().map(|(number, _)| number);
@@ -179,16 +203,19 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
     /// The slot of an episode that is not being written.
     fn slot_of(&self, episode: u32) -> Result<usize, Refusal> {
         let is_written = self.written().any(|number| number == episode);
-        let slot = self.slots.find(episode).filter(|_| is_written);
+        let slot = self.find(episode).filter(|_| is_written);
         slot.ok_or(Refusal::NoEpisode)
     }
 
-    /// Marks the oldest episode as given up, if its slot has one.
+    /// Takes the slot to be written next, an empty one or else the oldest that is not locked, and marks its episode as given
+    /// up, if it has one.
     fn prepare(&mut self) -> Result<bool, F::Error> {
-        let Some(slot) = self.slots.oldest() else {
+        let slots = self.slots.iter().enumerate();
+        let unlocked = slots.filter(|(_, slot)| !slot.locked);
+        let Some((slot, oldest)) = unlocked.min_by_key(|(_, slot)| slot.sequence) else {
             return Ok(false);
         };
-        if self.slots.get(slot).sequence != 0 {
+        if oldest.sequence != 0 {
             self.release(slot)?;
         }
         self.state = State::Erasing { slot, sector: 0 };
@@ -197,7 +224,7 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
 
     fn release(&mut self, slot: usize) -> Result<(), F::Error> {
         self.flash.write(layout::marks(slot), &layout::RELEASED)?;
-        self.slots.set(slot, 0, false);
+        self.set_slot(slot, 0, false);
         Ok(())
     }
 
@@ -219,13 +246,14 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> DropLog<F, SLOTS> {
         if first.kind() != Kind::Header {
             return Ok(());
         }
-        let newest = self.slots.newest().max(self.counters().episodes);
-        self.slots.set(slot, newest.saturating_add(1), false);
+        let numbers = self.slots.iter().map(|slot| slot.sequence);
+        let newest = numbers.fold(self.counters().episodes, u32::max);
+        self.set_slot(slot, newest.saturating_add(1), false);
         self.write(slot, 0, first)
     }
 
     fn write(&mut self, slot: usize, block: u32, next: &Block) -> Result<(), F::Error> {
-        let sequence = self.slots.get(slot).sequence;
+        let sequence = self.slot(slot).sequence;
         let ending = Ending::decode(next.payload()).filter(|_| next.kind() == Kind::Ending);
         let complete = ending.is_some_and(|it| u32::from(it.blocks) == block + 1);
         if complete || block + 1 == BLOCKS_PER_SLOT {
@@ -266,7 +294,7 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
     /// One operation.
     fn erase(&mut self, episode: u32) -> Result<(), Refusal> {
         let slot = self.slot_of(episode)?;
-        if self.slots.get(slot).locked {
+        if self.slot(slot).locked {
             return Err(Busy::Locked.into());
         }
         self.release(slot).map_err(|_| Refusal::StoreFailed)
@@ -274,11 +302,12 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
 
     /// One that was locked and unlocked too often fails. One operation.
     fn set_locked(&mut self, episode: u32, locked: bool) -> Result<(), Refusal> {
-        let slot = self.slots.find(episode).ok_or(Refusal::NoEpisode)?;
-        if self.slots.get(slot).locked == locked {
+        let slot = self.find(episode).ok_or(Refusal::NoEpisode)?;
+        if self.slot(slot).locked == locked {
             return Ok(());
         }
-        if locked && self.slots.unlocked() <= LEAST_UNLOCKED {
+        let unlocked = self.slots.iter().filter(|slot| !slot.locked);
+        if locked && unlocked.count() <= LEAST_UNLOCKED {
             return Err(Refusal::NoRoom);
         }
         let marks = SlotReader(&mut self.flash, slot).marks();
@@ -286,11 +315,11 @@ impl<F: MultiwriteNorFlash, const SLOTS: usize> Log for DropLog<F, SLOTS> {
         let address = layout::marks(slot) + u32::from(free.ok_or(Refusal::StoreFailed)?);
         let made = self.flash.write(address, &[0]);
         made.map_err(|_| Refusal::StoreFailed)?;
-        self.slots.set(slot, episode, locked);
+        self.set_slot(slot, episode, locked);
         Ok(())
     }
 
     fn lifetime(&mut self) -> Option<Counters> {
-        Some(*self.counters())
+        Some(self.ledger.counters)
     }
 }

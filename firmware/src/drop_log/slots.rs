@@ -1,4 +1,4 @@
-//! Which episode is in which slot.
+//! What is in a slot.
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use touchdown_core::event::EventKind;
@@ -23,72 +23,10 @@ pub struct Slot {
     pub released: bool,
 }
 
-#[derive(Clone, Debug)]
-pub(super) struct Slots<const SLOTS: usize>([Slot; SLOTS]);
-
-impl<const SLOTS: usize> Slots<SLOTS> {
-    pub(super) fn mount<F: ReadNorFlash>(flash: &mut F) -> Result<Self, F::Error> {
-        let mut slots = [Slot::default(); SLOTS];
-        for (number, slot) in slots.iter_mut().enumerate() {
-            *slot = SlotReader(flash, number).found()?;
-        }
-        Ok(Self(slots))
-    }
-
-    /// Slots with episodes after `sequence`, and these.
-    pub(super) fn after(&self, sequence: u32) -> impl Iterator<Item = (usize, u32)> + '_ {
-        let numbered = self.0.iter().map(|slot| slot.sequence).enumerate();
-        numbered.filter(move |&(_, it)| it > sequence)
-    }
-
-    pub(super) fn episodes(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
-        let used = self.0.iter().filter(|slot| slot.sequence != 0);
-        used.map(|slot| (slot.sequence, slot.locked))
-    }
-
-    pub(super) fn find(&self, sequence: u32) -> Option<usize> {
-        self.0
-            .iter()
-            .position(|slot| slot.sequence == sequence && sequence != 0)
-    }
-
-    pub(super) fn newest(&self) -> u32 {
-        self.0.iter().map(|slot| slot.sequence).max().unwrap_or(0)
-    }
-
-    pub(super) fn unlocked(&self) -> usize {
-        self.0.iter().filter(|slot| !slot.locked).count()
-    }
-
-    /// Slot to be written next: an empty one, or else the oldest that is not locked.
-    pub(super) fn oldest(&self) -> Option<usize> {
-        let slots = self.0.iter().enumerate();
-        slots
-            .filter(|(_, slot)| !slot.locked)
-            .min_by_key(|(_, slot)| slot.sequence)
-            .map(|(number, _)| number)
-    }
-
-    pub(super) fn get(&self, slot: usize) -> Slot {
-        self.0.get(slot).copied().unwrap_or_default()
-    }
-
-    pub(super) fn set(&mut self, slot: usize, sequence: u32, locked: bool) {
-        if let Some(slot) = self.0.get_mut(slot) {
-            *slot = Slot {
-                sequence,
-                locked,
-                released: false,
-            };
-        }
-    }
-}
-
 /// Flash, and the slot of it that is read.
 pub(super) struct SlotReader<'a, F>(pub(super) &'a mut F, pub(super) usize);
 
 impl<F: ReadNorFlash> SlotReader<'_, F> {
-    /// What it holds.
     pub(super) fn found(&mut self) -> Result<Slot, F::Error> {
         let marks = self.marks()?;
         let sequence = if marks.released { 0 } else { self.owner()? };
@@ -99,7 +37,6 @@ impl<F: ReadNorFlash> SlotReader<'_, F> {
         })
     }
 
-    /// Its marks.
     pub(super) fn marks(&mut self) -> Result<Marks, F::Error> {
         let mut bytes = [0; MARKS_BYTES];
         self.0.read(layout::marks(self.1), &mut bytes)?;

@@ -5,9 +5,8 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use touchdown_core::event::{Event, Notice};
-use touchdown_core::forecast::ForecastTask;
 use touchdown_core::sample::Sample;
-use touchdown_firmware::board::{Abilities, Board, default_config, default_settings};
+use touchdown_firmware::board::{Abilities, Board, default_settings};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::intake::Intake;
 use touchdown_firmware::main_loop::MainLoop;
@@ -104,15 +103,14 @@ pub fn started(
     source: impl FnMut(u64) -> Sample + 'static,
     cost: impl FnMut(u64) -> u64 + 'static,
 ) -> (Machine, MainLoop) {
-    let config = default_config();
     let pins = Rc::new(RefCell::new(Pins::default()));
     let desk = Desk {
         block: config_block::encode(&default_settings()),
         pins: Rc::clone(&pins),
     };
     let memory = Box::leak(Box::new(Memory::empty()));
-    let filled = memory.fill(&config.into(), Faults::NONE, BOOT, desk);
-    let (intake, tick) = filled.expect("a valid configuration");
+    let filled = memory.fill(&default_settings(), Faults::NONE, BOOT, desk);
+    let (intake, tick, below) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));
     let machine = Machine {
         now: 0,
@@ -133,9 +131,7 @@ pub fn started(
         bus,
         service: true,
     };
-    let forecast = ForecastTask::try_new(&config.detector).expect("a valid configuration");
-    let rate = config.detector.sample_rate;
-    (machine, MainLoop::new(None, rate, forecast))
+    (machine, below)
 }
 
 impl Machine {
@@ -232,10 +228,6 @@ impl Platform for Machine {
 
     fn store(&mut self, _: &[u8]) -> Result<(), Refusal> {
         Err(Refusal::NoStore)
-    }
-
-    fn unknown(&mut self) -> u64 {
-        0
     }
 
     fn reset(&mut self) {}

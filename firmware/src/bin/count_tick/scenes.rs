@@ -272,10 +272,8 @@ impl Scene {
         let mut noise = Noise(self.seed);
         for at in 0..self.samples {
             let angle = machine.spin / rate * at as f32 % TAU;
-            let (sin, cos) = sin_cos(angle);
-            let place = [self.orbit * cos, self.orbit * sin];
-            let (sin, cos) = sin_cos(3.0 * angle);
-            let runout = [self.runout * cos, self.runout * sin];
+            let place = around(self.orbit, angle);
+            let runout = around(self.runout, 3.0 * angle);
             let mut counts = [0; CHANNELS];
             for (plane, pair) in counts.chunks_exact_mut(2).enumerate() {
                 let (scales, fallen) = (models[plane].scales(), &rotors[plane]);
@@ -346,9 +344,9 @@ impl Scene {
     }
 }
 
-fn sin_cos(angle: f32) -> (f32, f32) {
+fn around(radius: f32, angle: f32) -> [f32; 2] {
     let (sin, cos) = Poly32::lit(f64::from(angle)).sin_cos();
-    (sin.to_f64() as f32, cos.to_f64() as f32)
+    [cos, sin].map(|it| radius * it.to_f64() as f32)
 }
 
 /// Sum of four even numbers (linear congruence), variance 1.

@@ -3,7 +3,7 @@
 use stm32f4::stm32f405::{GPIOA, GPIOB, RCC, SPI1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{CycleDelay, SpiRegisters};
+use crate::board::silicon::{CycleDelay, SpiRegisters};
 
 /// PB3 clock, PB4 in, PB5 out, PA15 chip select.
 pub struct Spi1 {
@@ -28,12 +28,8 @@ impl Spi1 {
         pins.ospeedr()
             .modify(|_, w| w.ospeedr3().high_speed().ospeedr5().high_speed());
         pins.moder().modify(|_, w| {
-            w.moder3()
-                .alternate()
-                .moder4()
-                .alternate()
-                .moder5()
-                .alternate()
+            w.moder3().alternate().moder4().alternate();
+            w.moder5().alternate()
         });
         spi.cr1().write(|w| {
             w.mstr().master().br().div4();

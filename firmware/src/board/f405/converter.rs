@@ -4,7 +4,7 @@
 //! ADC1 converts x and ADC2 y: both of a plane at one instant, plane b 40 converter cycles, 1.9 us, after plane a.
 
 use stm32f4::stm32f405::{ADC_COMMON, ADC1, ADC2, GPIOA, RCC, TIM2, TIM3, adc1};
-use touchdown_core::sample::{Sample, TACHOMETERS};
+use touchdown_core::sample::CHANNELS;
 
 use super::clocks::APB1_TIMER_HZ;
 use crate::board::SAMPLE_RATE_HZ;
@@ -14,7 +14,6 @@ use crate::platform::SampleSource;
 /// (DS8626, pin definitions).
 const INPUTS: [[u8; 2]; 2] = [[4, 6], [5, 7]];
 
-/// Timer and converters.
 pub struct Converter {
     x: ADC1,
     y: ADC2,
@@ -25,10 +24,8 @@ pub struct Converter {
 impl Converter {
     /// Sets them up, stopped.
     pub fn new(
-        (x, y): (ADC1, ADC2),
-        common: &ADC_COMMON,
-        timer: TIM2,
-        number: TIM3,
+        (x, y, common): (ADC1, ADC2, &ADC_COMMON),
+        (timer, number): (TIM2, TIM3),
         pins: &GPIOA,
         rcc: &RCC,
     ) -> Self {
@@ -69,31 +66,24 @@ impl Converter {
             number,
         }
     }
-
-    /// Starts sampling.
-    pub fn start(&self) {
-        self.timer.cr1().write(|w| w.cen().enabled());
-    }
 }
 
 impl SampleSource for Converter {
+    fn start(&self) {
+        self.timer.cr1().write(|w| w.cen().enabled());
+    }
+
     fn number(&self) -> u16 {
         self.number.cnt().read().cnt().bits() as u16
     }
 
     // Both converters are through: they began together, and take as long.
-    fn take(&mut self) -> Sample {
+    fn take(&mut self) -> Option<[u16; CHANNELS]> {
         self.x.sr().modify(|_, w| w.jeoc().clear());
         self.y.sr().modify(|_, w| w.jeoc().clear());
         let [ax, bx] = results(&self.x);
         let [ay, by] = results(&self.y);
-        Sample {
-            counts: [ax, ay, bx, by],
-            valid: 0b1111,
-            spin: None,
-            levitated: None,
-            edges: [None; TACHOMETERS],
-        }
+        Some([ax, ay, bx, by])
     }
 }
 

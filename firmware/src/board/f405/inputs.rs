@@ -4,7 +4,7 @@ use stm32f4::stm32f405::{GPIOB, GPIOC, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::APB1_TIMER_HZ;
-use crate::board::inputs::{InputRegisters, Inputs};
+use crate::board::silicon::{InputRegisters, Inputs};
 
 /// The timer counts every eighth tick: one turn of it takes 6.2 ms.
 const PRESCALER: u32 = 8;

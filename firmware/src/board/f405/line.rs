@@ -4,7 +4,7 @@ use stm32f4::stm32f405::{DMA2, GPIOB, RCC, USART1};
 
 use super::clocks::APB2_HZ;
 use crate::board::BAUD;
-use crate::board::line::{LineRegisters, RING_BYTES};
+use crate::board::silicon::{LineRegisters, RING_BYTES};
 
 /// RM0090, DMA2 request mapping: USART1_RX is channel 4 of stream 2, USART1_TX channel 4 of stream 7.
 const RECEIVES: usize = 2;
@@ -13,14 +13,12 @@ const CHANNEL: u8 = 4;
 /// USART_SR: transmission complete.
 const TC: u16 = 1 << 6;
 
-/// The port.
 pub struct Port {
     usart: USART1,
     dma: DMA2,
 }
 
 impl Port {
-    /// Sets it up.
     pub fn new(usart: USART1, dma: DMA2, pins: &GPIOB, rcc: &RCC) -> Self {
         rcc.ahb1enr()
             .modify(|_, w| w.gpioben().enabled().dma2en().enabled());
@@ -40,20 +38,24 @@ impl Port {
             .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
         Self { usart, dma }
     }
+
+    /// Aims a stream at the data register and so many bytes of memory from `at` on.
+    fn aim(&self, stream: usize, at: u32, bytes: u32) {
+        let stream = self.dma.st(stream);
+        let register = self.usart.dr().as_ptr() as u32;
+        // SAFETY: who calls gives static memory of so many bytes, or more.
+        unsafe {
+            stream.par().write(|w| w.bits(register));
+            stream.m0ar().write(|w| w.bits(at));
+            stream.ndtr().write(|w| w.bits(bytes));
+        }
+    }
 }
 
 impl LineRegisters for Port {
     fn receive(&mut self, ring: u32) {
-        let stream = self.dma.st(RECEIVES);
-        // SAFETY: from the data register into the ring, which is static and has so many bytes.
-        unsafe {
-            stream
-                .par()
-                .write(|w| w.bits(self.usart.dr().as_ptr() as u32));
-            stream.m0ar().write(|w| w.bits(ring));
-            stream.ndtr().write(|w| w.bits(RING_BYTES as u32));
-        }
-        stream.cr().write(|w| {
+        self.aim(RECEIVES, ring, RING_BYTES as u32);
+        self.dma.st(RECEIVES).cr().write(|w| {
             w.chsel().set(CHANNEL).minc().incremented();
             w.circ().enabled().en().enabled()
         });
@@ -64,22 +66,14 @@ impl LineRegisters for Port {
     }
 
     fn transmit(&mut self, batch: u32, length: u16) {
-        let stream = self.dma.st(SENDS);
         self.dma.hifcr().write(|w| {
             w.ctcif7().clear().chtif7().clear().cteif7().clear();
             w.cdmeif7().clear().cfeif7().clear()
         });
-        // SAFETY: from the batch, which is static and has as many bytes or more, into the data register.
-        unsafe {
-            stream
-                .par()
-                .write(|w| w.bits(self.usart.dr().as_ptr() as u32));
-            stream.m0ar().write(|w| w.bits(batch));
-            stream.ndtr().write(|w| w.bits(length.into()));
-        }
+        self.aim(SENDS, batch, length.into());
         // SAFETY: bits of the register. A 1 leaves what it is at, only "complete" is cleared: RM0090, USART_SR.
         self.usart.sr().write(|w| unsafe { w.bits(0x3ff & !TC) });
-        stream.cr().write(|w| {
+        self.dma.st(SENDS).cr().write(|w| {
             w.chsel().set(CHANNEL).minc().incremented();
             w.dir().memory_to_peripheral().en().enabled()
         });

@@ -3,73 +3,46 @@
 use stm32f4::stm32f405::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
-use crate::board::silicon::{OutputRegisters, Watchdog};
+use crate::board::silicon::OutputRegisters;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4, of the same port, is the service input, high while on.
-pub struct OutputPins(GPIOC);
-
-impl OutputPins {
-    /// All without current.
-    pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
-        rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
-        let outputs = Self(pins);
-        outputs.drive(Outputs::SAFE);
-        // A broken wire reads as off.
-        outputs.0.pupdr().modify(|_, w| w.pupdr4().pull_down());
-        outputs.0.moder().modify(|_, w| {
-            w.moder6().output().moder7().output();
-            w.moder2().output().moder3().output()
-        });
-        outputs
-    }
-}
-
-impl OutputRegisters for OutputPins {
-    fn drive(&self, outputs: Outputs) {
-        // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
-        self.0.bsrr().write(|w| {
-            drop_all(w)
-                .bs6()
-                .bit(outputs.run)
-                .bs7()
-                .bit(outputs.no_brake)
-                .bs2()
-                .bit(outputs.permit)
-                .bs3()
-                .bit(outputs.ready)
-        });
-    }
-
-    fn drop_now() {
-        // SAFETY: a single write to a register that only sets and resets.
-        let pins = unsafe { &*GPIOC::ptr() };
-        pins.bsrr().write(drop_all);
-    }
-}
-
-type Levels = stm32f4::stm32f405::gpioi::bsrr::W;
-
-fn drop_all(w: &mut Levels) -> &mut Levels {
-    w.br6().reset().br7().reset().br2().reset().br3().reset()
-}
-
-/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms (1.3
-/// to 3.8 ms over the tolerance of its oscillator, 17 to 47 kHz: DS8626, LSI characteristics).
-pub struct IndependentWatchdog {
+///
+/// The watchdog resets the core when good ticks stay away for 2 ms (1.3 to 3.8 ms over the tolerance of its oscillator, 17
+/// to 47 kHz: DS8626, LSI characteristics).
+pub struct OutputPins {
     watchdog: IWDG,
     debug: DBGMCU,
 }
 
-impl IndependentWatchdog {
-    /// Not started.
-    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
+impl OutputPins {
+    /// All without current, the watchdog not started.
+    pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
+        rcc.ahb1enr().modify(|_, w| w.gpiocen().enabled());
+        Self::drive(Outputs::SAFE);
+        // A broken wire reads as off.
+        pins.pupdr().modify(|_, w| w.pupdr4().pull_down());
+        pins.moder().modify(|_, w| {
+            w.moder6().output().moder7().output();
+            w.moder2().output().moder3().output()
+        });
         Self { watchdog, debug }
     }
 }
 
-impl Watchdog for IndependentWatchdog {
-    fn start(&self) {
+impl OutputRegisters for OutputPins {
+    fn drive(outputs: Outputs) {
+        // SAFETY: a single write to a register that only sets and resets.
+        let pins = unsafe { &*GPIOC::ptr() };
+        // Where a bit of the lower half is set the upper half does nothing: RM0090, GPIOx_BSRR.
+        pins.bsrr().write(|w| {
+            w.br6().reset().br7().reset().br2().reset().br3().reset();
+            w.bs6().bit(outputs.run).bs7().bit(outputs.no_brake);
+            w.bs2().bit(outputs.permit).bs3().bit(outputs.ready)
+        });
+    }
+
+    fn start_watchdog(&self) {
         self.debug
             .apb1_fz()
             .modify(|_, w| w.dbg_iwdg_stop().set_bit());

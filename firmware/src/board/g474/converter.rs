@@ -6,14 +6,14 @@
 use core::convert::Infallible;
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3};
-use touchdown_core::sample::Sample;
+use stm32g4::stm32g474::{EXTI, GPIOA, GPIOB, RCC, SYSCFG, TIM2, TIM3, gpiob};
+use touchdown_core::sample::CHANNELS;
 
 use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
 use crate::ad7606::Ad7606;
 use crate::board::SAMPLE_RATE_HZ;
-use crate::board::bus::Bus;
+use crate::board::silicon::Bus;
 use crate::platform::SampleSource;
 
 /// Cycles for which CONVST is low before it rises: 0.4 us.
@@ -22,15 +22,20 @@ const LOW: u32 = 64;
 /// BUSY and RESET.
 pub struct PortBPin;
 
+impl PortBPin {
+    fn port() -> &'static gpiob::RegisterBlock {
+        // SAFETY: here it is read, or written where that only sets and resets.
+        unsafe { &*GPIOB::ptr() }
+    }
+}
+
 impl ErrorType for PortBPin {
     type Error = Infallible;
 }
 
 impl InputPin for PortBPin {
     fn is_high(&mut self) -> Result<bool, Infallible> {
-        // SAFETY: a read of a register that reading does not change.
-        let pins = unsafe { &*GPIOB::ptr() };
-        Ok(pins.idr().read().idr0().bit_is_set())
+        Ok(Self::port().idr().read().idr0().bit_is_set())
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {
@@ -40,23 +45,18 @@ impl InputPin for PortBPin {
 
 impl OutputPin for PortBPin {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        // SAFETY: a single write to a register that only sets and resets.
-        let pins = unsafe { &*GPIOB::ptr() };
-        pins.bsrr().write(|w| w.br1().set_bit());
+        Self::port().bsrr().write(|w| w.br1().set_bit());
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        // SAFETY: likewise.
-        let pins = unsafe { &*GPIOB::ptr() };
-        pins.bsrr().write(|w| w.bs1().set_bit());
+        Self::port().bsrr().write(|w| w.bs1().set_bit());
         Ok(())
     }
 }
 
-/// Timer and converter.
 pub struct ExternalConverter {
-    adc: Ad7606<Bus<SelectedSpi>, PortBPin, PortBPin>,
+    adc: Ad7606<Bus<SelectedSpi>, PortBPin>,
     timer: TIM2,
     number: TIM3,
     edges: EXTI,
@@ -107,19 +107,18 @@ impl ExternalConverter {
             edges,
         })
     }
-
-    /// Starts sampling.
-    pub fn start(&self) {
-        self.timer.cr1().write(|w| w.cen().set_bit());
-    }
 }
 
 impl SampleSource for ExternalConverter {
+    fn start(&self) {
+        self.timer.cr1().write(|w| w.cen().set_bit());
+    }
+
     fn number(&self) -> u16 {
         self.number.cnt().read().bits() as u16
     }
 
-    fn take(&mut self) -> Sample {
+    fn take(&mut self) -> Option<[u16; CHANNELS]> {
         self.edges.pr1().write(|w| w.pif0().clear_bit_by_one());
         self.adc.take(&mut Wait {})
     }

@@ -4,7 +4,7 @@ use stm32g4::stm32g474::{GPIOB, GPIOC, RCC, TIM4};
 use touchdown_protocol::config_block::Settings;
 
 use super::clocks::CORE_HZ;
-use crate::board::inputs::{InputRegisters, Inputs};
+use crate::board::silicon::{InputRegisters, Inputs};
 
 /// The timer counts every sixteenth tick: one turn of it takes 6.2 ms.
 const PRESCALER: u32 = 16;

@@ -4,7 +4,7 @@ use stm32g4::stm32g474::{DMA1, DMAMUX, GPIOA, RCC, USART1};
 
 use super::clocks::CORE_HZ;
 use crate::board::BAUD;
-use crate::board::line::{LineRegisters, RING_BYTES};
+use crate::board::silicon::{LineRegisters, RING_BYTES};
 
 /// Channels of DMA1, and of the multiplexer one less; requests of USART1_RX and USART1_TX: RM0440, DMAMUX request mapping, held against
 /// NuttX, stm32g4xxxx_dmamux.h.
@@ -16,14 +16,12 @@ const FROM_MEMORY: u32 = 1 << 4;
 const CIRCULAR: u32 = 1 << 5;
 const UP: u32 = 1 << 7;
 
-/// The port.
 pub struct ChannelPort {
     usart: USART1,
     dma: DMA1,
 }
 
 impl ChannelPort {
-    /// Sets it up.
     pub fn new(usart: USART1, dma: DMA1, requests: &DMAMUX, pins: &GPIOA, rcc: &RCC) -> Self {
         rcc.ahb1enr()
             .modify(|_, w| w.dma1en().set_bit().dmamux1en().set_bit());

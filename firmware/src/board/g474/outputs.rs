@@ -3,71 +3,54 @@
 use stm32g4::stm32g474::{DBGMCU, GPIOC, IWDG, RCC};
 use touchdown_protocol::controller::Outputs;
 
-use crate::board::silicon::{OutputRegisters, Watchdog};
+use crate::board::silicon::OutputRegisters;
 
 /// PC6 run, PC7 no brake, PC2 permit, PC3 ready, high with current. They float during reset: the
 /// circuits behind them need pull-downs. PC4 is the service input, high while on.
-pub struct OutputPort(GPIOC);
-
-/// RM0440, GPIOx_BSRR: the upper half resets.
-const DROP_ALL: u32 = (1 << 6 | 1 << 7 | 1 << 2 | 1 << 3) << 16;
-
-impl OutputPort {
-    /// All without current.
-    pub fn new(pins: GPIOC, rcc: &RCC) -> Self {
-        rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
-        let outputs = Self(pins);
-        outputs.drive(Outputs::SAFE);
-        // SAFETY: pull-down is 2: a broken wire reads as off. An output is 1, an input 0; after reset all are analog.
-        unsafe {
-            outputs.0.pupdr().modify(|_, w| w.pupdr4().bits(2));
-            outputs.0.moder().modify(|_, w| {
-                w.moder6().bits(1).moder7().bits(1);
-                w.moder2().bits(1).moder3().bits(1).moder4().bits(0)
-            });
-        }
-        outputs
-    }
-}
-
-impl OutputRegisters for OutputPort {
-    fn drive(&self, outputs: Outputs) {
-        let levels = [
-            (outputs.run, 6),
-            (outputs.no_brake, 7),
-            (outputs.permit, 2),
-            (outputs.ready, 3),
-        ];
-        let set = levels.map(|(level, pin)| u32::from(level) << pin);
-        // SAFETY: where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
-        self.0
-            .bsrr()
-            .write(|w| unsafe { w.bits(set.iter().fold(DROP_ALL, |all, it| all | it)) });
-    }
-
-    fn drop_now() {
-        // SAFETY: a single write to a register that only sets and resets.
-        let pins = unsafe { &*GPIOC::ptr() };
-        // SAFETY: likewise.
-        pins.bsrr().write(|w| unsafe { w.bits(DROP_ALL) });
-    }
-}
-
-/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms of its oscillator.
-pub struct IndependentWatchdog {
+///
+/// The watchdog resets the core when good ticks stay away for 2 ms of its oscillator.
+pub struct OutputPort {
     watchdog: IWDG,
     debug: DBGMCU,
 }
 
-impl IndependentWatchdog {
-    /// Not started.
-    pub fn new(watchdog: IWDG, debug: DBGMCU) -> Self {
+impl OutputPort {
+    /// All without current, the watchdog not started.
+    pub fn new(pins: GPIOC, watchdog: IWDG, debug: DBGMCU, rcc: &RCC) -> Self {
+        rcc.ahb2enr().modify(|_, w| w.gpiocen().set_bit());
+        Self::drive(Outputs::SAFE);
+        // SAFETY: pull-down is 2: a broken wire reads as off. An output is 1, an input 0; after reset all are analog.
+        unsafe {
+            pins.pupdr().modify(|_, w| w.pupdr4().bits(2));
+            pins.moder().modify(|_, w| {
+                w.moder6().bits(1).moder7().bits(1);
+                w.moder2().bits(1).moder3().bits(1).moder4().bits(0)
+            });
+        }
         Self { watchdog, debug }
     }
 }
 
-impl Watchdog for IndependentWatchdog {
-    fn start(&self) {
+impl OutputRegisters for OutputPort {
+    fn drive(outputs: Outputs) {
+        // SAFETY: a single write to a register that only sets and resets.
+        let pins = unsafe { &*GPIOC::ptr() };
+        // Where a bit of the lower half is set the upper half does nothing: RM0440, GPIOx_BSRR.
+        pins.bsrr().write(|w| {
+            w.br6()
+                .set_bit()
+                .br7()
+                .set_bit()
+                .br2()
+                .set_bit()
+                .br3()
+                .set_bit();
+            w.bs6().bit(outputs.run).bs7().bit(outputs.no_brake);
+            w.bs2().bit(outputs.permit).bs3().bit(outputs.ready)
+        });
+    }
+
+    fn start_watchdog(&self) {
         self.debug
             .apb1l_fz()
             .modify(|_, w| w.dbg_iwdg_stop().set_bit());

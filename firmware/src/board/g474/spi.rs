@@ -3,9 +3,8 @@
 use stm32g4::stm32g474::{GPIOA, GPIOB, RCC, SPI1, SPI3, gpioa, spi1};
 
 use super::clocks::CORE_HZ;
-use crate::board::bus::{Bus, CycleDelay, SpiRegisters};
+use crate::board::silicon::{Bus, CycleDelay, SpiRegisters};
 
-/// Waits by counting cycles.
 pub type Wait = CycleDelay<{ CORE_HZ / 1_000_000 }>;
 
 /// A SPI and the pin of port A that selects its device.
@@ -37,7 +36,7 @@ pub fn converter(_: SPI1, pins: &GPIOA, rcc: &RCC) -> Bus<SelectedSpi> {
 }
 
 /// PB3 clock, PB4 in, PB5 out, PA15 select: mode 0 at 21 MHz.
-pub fn flash(_: SPI3, pins: &GPIOA, bus: &GPIOB, rcc: &RCC) -> Bus<SelectedSpi> {
+pub fn flash(_: SPI3, (pins, bus): (&GPIOA, &GPIOB), rcc: &RCC) -> Bus<SelectedSpi> {
     rcc.ahb2enr()
         .modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
     rcc.apb1enr1().modify(|_, w| w.spi3en().set_bit());

@@ -27,7 +27,6 @@ pub struct Files {
 }
 
 impl Files {
-    /// Opens them.
     pub fn open() -> Result<Self, Failure> {
         let arguments = env::args::<COMMAND_LINE_BYTES>().map_err(|_| Failure::CommandLine)?;
         let mut names = &arguments;
@@ -37,12 +36,12 @@ impl Files {
         else {
             return Err(Failure::CommandLine);
         };
+        let mount = |name: Name| FileLog::mount(NorFile::open(&name)?).ok();
+        let log = log.map(|name| mount(name).ok_or(Failure::Log));
         Ok(Self {
             replay: Replay::open(&replay)?,
             answer: create_answer(&answer).map_err(|_| Failure::Answer)?,
-            log: log
-                .map(|name| mount(&name).ok_or(Failure::Log))
-                .transpose()?,
+            log: log.transpose()?,
             settings: settings.map(SettingsFile),
         })
     }
@@ -84,7 +83,12 @@ impl Replay {
     /// The next sample and what comes with it; `None` at the end of the file.
     pub fn next(&mut self) -> Result<Option<(Incoming, Option<u8>)>, Failure> {
         if self.at == self.records {
-            (self.records, self.at) = (self.read()?, 0);
+            let filled = fill(&mut self.file, self.block.as_flattened_mut());
+            let filled = filled.map_err(|_| Failure::Replay)?;
+            if filled % wire::SAMPLE_BYTES != 0 {
+                return Err(Failure::Replay);
+            }
+            (self.records, self.at) = (filled / wire::SAMPLE_BYTES, 0);
         }
         let Some([record, ..]) = self.block.get(self.at..self.records) else {
             return Ok(None);
@@ -93,20 +97,6 @@ impl Replay {
         let incoming = wire::decode_sample(record).map(Some);
         incoming.ok_or(Failure::Replay)
     }
-
-    /// Fills the block as far as the file goes; how many records it has.
-    fn read(&mut self) -> Result<usize, Failure> {
-        let filled = fill(&mut self.file, self.block.as_flattened_mut());
-        let filled = filled.map_err(|_| Failure::Replay)?;
-        if filled % wire::SAMPLE_BYTES != 0 {
-            return Err(Failure::Replay);
-        }
-        Ok(filled / wire::SAMPLE_BYTES)
-    }
-}
-
-fn mount(name: &Name) -> Option<FileLog> {
-    FileLog::mount(NorFile::open(name)?).ok()
 }
 
 fn create_answer(name: &Name) -> io::Result<File> {

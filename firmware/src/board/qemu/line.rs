@@ -1,6 +1,7 @@
 //! USART1 at the rate of a real line, in emulated time. QEMU's has no rate and no DMA: the sampling interrupt moves the
 //! bytes.
 
+use cortex_m::singleton;
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4::stm32f405::USART1;
 
@@ -9,11 +10,6 @@ use crate::outgoing::Outgoing;
 
 /// Bits of a byte on the line.
 const BITS: f32 = 10.0;
-
-/// Bytes on their way in.
-pub type Came = Queue<u8, 256>;
-/// Bytes on their way out.
-pub type Goes = Queue<u8, 64>;
 
 /// The end of the interrupt.
 pub struct Wire {
@@ -27,19 +23,18 @@ pub struct Wire {
 
 /// The end of the main loop.
 pub struct Line {
-    /// Bytes that came.
     pub came: Consumer<'static, u8>,
     goes: Producer<'static, u8>,
-    /// Frames that wait.
     pub out: Outgoing,
 }
 
-/// Both ends, with so many interrupts a second.
-pub fn open(
-    usart: USART1,
-    (came, goes): (&'static mut Came, &'static mut Goes),
-    interrupts: f32,
-) -> (Wire, Line) {
+/// Both ends, with so many interrupts a second; once.
+pub fn open(usart: USART1, interrupts: f32) -> (Wire, Line) {
+    let came = singleton!(: Queue<u8, 256> = Queue::new());
+    let goes = singleton!(: Queue<u8, 64> = Queue::new());
+    let (Some(came), Some(goes)) = (came, goes) else {
+        unreachable!("one port, one line");
+    };
     // SAFETY: any value of 16 bits from 16 on is a divider: RM0090, USART_BRR.
     usart.brr().write(|w| unsafe { w.bits(16) });
     usart
@@ -93,7 +88,6 @@ impl Line {
         self.out.is_empty()
     }
 
-    /// Whether all has gone out.
     pub fn is_done(&self) -> bool {
         self.out.is_empty() && self.goes.is_empty()
     }

@@ -19,23 +19,26 @@ use semihosting::io::Write as _;
 use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
-use touchdown_core::monitor::{Fingerprint, MonitorConfig};
+use touchdown_core::monitor::Fingerprint;
 use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
 
 use self::files::{Files, Replay};
-use self::line::{Came, Goes, Wire};
+use self::line::Wire;
 use self::nor::NorFile;
 use self::remote::EmulatorPlatform;
 use self::settings::SettingsFile;
-use super::held::{self, Held};
-use super::{Abilities, Board, EMULATED_SLOTS, image};
+use super::f405::F405;
+use super::silicon::ConfigFlash as _;
+use super::silicon::held::{self, Held};
+use super::silicon::image;
+use super::{Abilities, Board, EMULATED_SLOTS};
 use crate::drop_log::DropLog;
 use crate::intake::Intake;
 use crate::journal;
 use crate::main_loop::MainLoop;
-use crate::memory;
+use crate::memory::Memory;
 use crate::power_on::{InForce, PowerOn};
 use crate::tick::TickTask;
 
@@ -66,24 +69,6 @@ type Name = heapless::CString<256>;
 /// The drop log in a file.
 pub(crate) type FileLog = DropLog<NorFile, EMULATED_SLOTS>;
 
-/// What outlives main's frame.
-pub struct Memory {
-    monitor: memory::Memory,
-    came: Came,
-    goes: Goes,
-}
-
-impl Memory {
-    /// Empty.
-    pub const fn empty() -> Self {
-        Self {
-            monitor: memory::Memory::empty(),
-            came: Came::new(),
-            goes: Goes::new(),
-        }
-    }
-}
-
 static SAMPLING: Held<Sampling> = Held::new();
 static TICK: Held<TickTask<'static, Emulated>> = Held::new();
 /// Samples of which all that follows is done.
@@ -97,13 +82,12 @@ pub struct Emulated {
     shown: Option<Shown>,
     ticks: u64,
     block: InForce,
-    failed: bool,
 }
 
 impl Emulated {
     fn write(&mut self, record: &Record) {
-        let bytes = wire::encode_record(record);
-        self.failed |= self.answer.write_all(&bytes).is_err();
+        let written = self.answer.write_all(&wire::encode_record(record));
+        written.unwrap_or_else(|_| exit(Failure::Answer as i32));
     }
 }
 
@@ -124,9 +108,6 @@ impl Board for Emulated {
     fn config(&self) -> &[u8] {
         self.block.bytes()
     }
-
-    // No watchdog is emulated.
-    fn feed(&mut self) {}
 }
 
 /// What the sampling interrupt has.
@@ -192,7 +173,12 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     };
     let mut files = Files::open()?;
     let head = files.replay.head().ok_or(Failure::Replay)?;
-    let abilities = abilities(&head.config);
+    // Those of a board that gives the samples of this configuration.
+    let abilities = Abilities {
+        sample_rate: head.config.detector.sample_rate,
+        full_scale: head.config.sensing.full_scale,
+        tachometers: head.config.tachometers.is_some(),
+    };
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
     journal::config(&settings.monitor);
     let counters = files.log.as_ref().map(FileLog::counters);
@@ -202,10 +188,9 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         shown: None,
         ticks: 0,
         block,
-        failed: false,
     };
-    let filled = memory.monitor.fill(&settings, found, boot, board);
-    let (intake, tick) = filled.map_err(|refusal| {
+    let filled = memory.fill(&settings, found, boot, board);
+    let (intake, tick, below) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
     })?;
@@ -214,10 +199,8 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     } else {
         tick.app.assume_lift();
     }
-    let forecast = memory::forecast_task(&settings.monitor).map_err(|_| Failure::Config)?;
     TICK.put(tick);
-    let queues = (&mut memory.came, &mut memory.goes);
-    let (wire, line) = line::open(chip.USART1, queues, abilities.sample_rate);
+    let (wire, line) = line::open(chip.USART1, abilities.sample_rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
         replay: files.replay,
@@ -237,7 +220,6 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         heard: None,
         was_over: false,
     };
-    let below = MainLoop::new(settings.key, abilities.sample_rate, forecast);
     Ok((below, platform))
 }
 
@@ -252,22 +234,13 @@ fn start_timer(timer: &TIM2, sample_rate: f32) {
         .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32));
 }
 
-/// Those of a board that gives the samples of this configuration.
-fn abilities(replayed: &MonitorConfig) -> Abilities {
-    Abilities {
-        sample_rate: replayed.detector.sample_rate,
-        full_scale: replayed.sensing.full_scale,
-        tachometers: replayed.tachometers.is_some(),
-    }
-}
-
 /// What is found: the configuration of the replay where none is stored.
 fn power_on(head: &ReplayHead, file: Option<&SettingsFile>) -> PowerOn {
     PowerOn {
         stored: file.map_or(Err(BlockError::Blank), SettingsFile::load),
         fallback: head.config.into(),
         is_configured: head.is_configured,
-        is_whole: image::is_whole(<stm32f4::stm32f405::FLASH as super::slots::ConfigFlash>::START),
+        is_whole: image::is_whole(F405::START),
         crash: None,
         has_bitten: false,
     }

@@ -8,8 +8,9 @@ use embedded_storage::nor_flash::{
 };
 use semihosting::fs::File;
 use semihosting::io::{self, Read, Seek, SeekFrom, Write};
+use semihosting::process::exit;
 
-use super::EMULATED_SLOTS;
+use super::{EMULATED_SLOTS, Failure};
 use crate::drop_log::bytes_of;
 use crate::platform::Ready;
 
@@ -17,42 +18,26 @@ const SECTOR_BYTES: usize = 4096;
 const PAGE_BYTES: usize = 256;
 const BYTES: usize = bytes_of(EMULATED_SLOTS);
 
-/// The file.
-pub struct NorFile {
-    file: File,
-    failed: bool,
-}
+pub struct NorFile(File);
 
 impl NorFile {
     /// A file that is there, or a new one, all erased.
     pub fn open(name: &CStr) -> Option<Self> {
-        let failed = false;
         let open = || File::options().read(true).write(true).open(name).ok();
         if let Some(file) = open() {
-            return Some(Self { file, failed });
+            return Some(Self(file));
         }
         drop(File::create(name).ok()?);
-        let file = open()?;
-        let mut flash = Self { file, failed };
+        let mut flash = Self(open()?);
         flash.erase(0, BYTES as u32).ok()?;
         Some(flash)
     }
 
-    /// Whether the file could not be read or written.
-    pub fn has_failed(&self) -> bool {
-        self.failed
-    }
-
-    /// Acts on the file at `offset`.
-    fn at(
-        &mut self,
-        offset: u32,
-        act: impl FnOnce(&mut File) -> io::Result<()>,
-    ) -> Result<(), NorFlashErrorKind> {
-        let there = self.file.seek(SeekFrom::Start(offset.into()));
-        let done = there.and_then(|_| act(&mut self.file));
-        self.failed |= done.is_err();
-        done.map_err(|_| NorFlashErrorKind::Other)
+    /// Acts on the file at `offset`; a file that cannot be read or written ends the run.
+    fn at(&mut self, offset: u32, act: impl FnOnce(&mut File) -> io::Result<()>) {
+        let there = self.0.seek(SeekFrom::Start(offset.into()));
+        let done = there.and_then(|_| act(&mut self.0));
+        done.unwrap_or_else(|_| exit(Failure::Log as i32));
     }
 }
 
@@ -65,7 +50,8 @@ impl ReadNorFlash for NorFile {
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
         check_read(self, offset, bytes.len())?;
-        self.at(offset, |file| file.read_exact(bytes))
+        self.at(offset, |file| file.read_exact(bytes));
+        Ok(())
     }
 
     fn capacity(&self) -> usize {
@@ -79,9 +65,10 @@ impl NorFlash for NorFile {
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
         check_erase(self, from, to)?;
-        (from..to)
-            .step_by(PAGE_BYTES)
-            .try_for_each(|page| self.at(page, |file| file.write_all(&[0xff; PAGE_BYTES])))
+        for page in (from..to).step_by(PAGE_BYTES) {
+            self.at(page, |file| file.write_all(&[0xff; PAGE_BYTES]));
+        }
+        Ok(())
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
@@ -95,7 +82,7 @@ impl NorFlash for NorFile {
             held.iter_mut()
                 .zip(piece)
                 .for_each(|(held, new)| *held &= new);
-            self.at(start, |file| file.write_all(held))?;
+            self.at(start, |file| file.write_all(held));
         }
         Ok(())
     }
@@ -105,6 +92,6 @@ impl MultiwriteNorFlash for NorFile {}
 
 impl Ready for NorFile {
     fn is_ready(&mut self) -> bool {
-        !self.failed
+        true
     }
 }

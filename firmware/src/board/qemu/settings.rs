@@ -12,7 +12,6 @@ use crate::power_on::InForce;
 pub struct SettingsFile(pub Name);
 
 impl SettingsFile {
-    /// What is stored.
     pub fn load(&self) -> Result<(InForce, Settings), BlockError> {
         let mut bytes = [0xff; BLOCK_BYTES];
         let mut file = File::open(&self.0).map_err(|_| BlockError::Blank)?;
@@ -22,7 +21,6 @@ impl SettingsFile {
         Ok((InForce::Held(block), settings))
     }
 
-    /// Stores a block.
     pub fn store(&self, block: &[u8]) -> Result<(), Refusal> {
         fs::write(&self.0, block).map_err(|_| Refusal::StoreFailed)
     }

@@ -24,36 +24,33 @@ impl<R> ErrorType for Bus<R> {
     type Error = Infallible;
 }
 
+impl<R: SpiRegisters> Bus<R> {
+    /// Sends bytes, then zeros, and takes what comes meanwhile, as far as there is room.
+    fn exchange(&mut self, into: &mut [u8], from: &[u8]) {
+        for at in 0..into.len().max(from.len()) {
+            let byte = self.0.exchange(from.get(at).copied().unwrap_or(0));
+            if let Some(place) = into.get_mut(at) {
+                *place = byte;
+            }
+        }
+    }
+}
+
 impl<R: SpiRegisters> SpiDevice for Bus<R> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        let registers = &mut self.0;
-        registers.select(true);
+        self.0.select(true);
         for operation in operations {
             match operation {
-                Operation::Read(bytes) => {
-                    bytes.iter_mut().for_each(|it| *it = registers.exchange(0));
-                }
-                Operation::Write(bytes) => bytes.iter().for_each(|it| {
-                    registers.exchange(*it);
-                }),
-                Operation::Transfer(into, from) => {
-                    let mut from = from.iter();
-                    for place in into.iter_mut() {
-                        *place = registers.exchange(from.next().copied().unwrap_or(0));
-                    }
-                    from.for_each(|it| {
-                        registers.exchange(*it);
-                    });
-                }
+                Operation::Read(into) => self.exchange(into, &[]),
+                Operation::Write(from) => self.exchange(&mut [], from),
+                Operation::Transfer(into, from) => self.exchange(into, from),
                 Operation::TransferInPlace(bytes) => {
-                    bytes
-                        .iter_mut()
-                        .for_each(|it| *it = registers.exchange(*it));
+                    bytes.iter_mut().for_each(|it| *it = self.0.exchange(*it));
                 }
                 Operation::DelayNs(time) => R::Wait::default().delay_ns(*time),
             }
         }
-        registers.select(false);
+        self.0.select(false);
         Ok(())
     }
 }

@@ -8,19 +8,13 @@ use crate::power_on::InForce;
 
 /// Flash of a chip that no image takes.
 pub trait ConfigFlash {
-    /// Its first address and its bytes; any byte may be read.
+    /// Its first address; any byte may be read.
     const START: usize;
     /// Its bytes.
     const BYTES: usize;
 
-    /// Lets it be written.
-    fn unlock(&self);
-
-    /// Programs 8 bytes at this address, of it and aligned, that were erased.
+    /// Programs 8 bytes at this address, of it and aligned, that were erased; only meanwhile it can be written.
     fn program(&self, address: usize, bytes: [u8; 8]);
-
-    /// Lets it be written no more.
-    fn lock(&self);
 }
 
 const fn slots<F: ConfigFlash>() -> usize {
@@ -54,13 +48,11 @@ pub fn load<F: ConfigFlash>() -> Result<(InForce, Settings), BlockError> {
     }
 }
 
-/// Appends a block.
 pub fn store<F: ConfigFlash>(flash: &F, block: &[u8]) -> Result<(), Refusal> {
     let at = used::<F>();
     if at >= slots::<F>() || block.len() > BLOCK_BYTES {
         return Err(Refusal::StoreFailed);
     }
-    flash.unlock();
     for (index, part) in block.chunks(8).enumerate() {
         let mut bytes = [0xff; 8];
         bytes
@@ -70,7 +62,6 @@ pub fn store<F: ConfigFlash>(flash: &F, block: &[u8]) -> Result<(), Refusal> {
         // A few at a time: ticks come in between.
         flash.program(F::START + at * BLOCK_BYTES + 8 * index, bytes);
     }
-    flash.lock();
     let stored = slot::<F>(at).get(..block.len());
     (stored == Some(block))
         .then_some(())

@@ -5,25 +5,20 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::{DWT, SCB};
 use touchdown_protocol::link::{Frame, Refusal};
 
-use super::line::Line;
-use super::silicon::{Chip, ChipBoard, ChipLog};
-use super::{Abilities, record};
+use super::{Chip, ChipBoard, ChipLog, Line, record, slots};
+use crate::board::Abilities;
 use crate::journal;
 use crate::platform::{JournalEntry, Platform};
 use crate::tick::TickTask;
 
 /// The chip, its line and the log.
 pub struct ChipPlatform<C: Chip> {
-    chip: C,
-    line: Line<C::Port>,
-    log: Option<ChipLog<C>>,
-}
-
-impl<C: Chip> ChipPlatform<C> {
-    /// Of the parts that are up.
-    pub fn new(chip: C, line: Line<C::Port>, log: Option<ChipLog<C>>) -> Self {
-        Self { chip, line, log }
-    }
+    /// The chip.
+    pub chip: C,
+    /// The line.
+    pub line: Line<C::Port>,
+    /// The log, where there is one.
+    pub log: Option<ChipLog<C>>,
 }
 
 impl<C: Chip> Platform for ChipPlatform<C> {
@@ -62,7 +57,7 @@ impl<C: Chip> Platform for ChipPlatform<C> {
     }
 
     fn store(&mut self, block: &[u8]) -> Result<(), Refusal> {
-        self.chip.store(block)
+        slots::store(&self.chip, block)
     }
 
     fn age_us(&mut self) -> u32 {

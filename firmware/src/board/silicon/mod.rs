@@ -1,5 +1,14 @@
 //! The monitor on a chip, whatever its registers: its start, its interrupts, and what its tick has of it.
 
+mod bus;
+pub mod held;
+pub mod image;
+mod inputs;
+mod line;
+mod platform;
+pub mod record;
+mod slots;
+
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::Peripherals;
@@ -7,24 +16,24 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::{DWT, SCB};
 use defmt::error;
 use embedded_hal::delay::DelayNs;
-use touchdown_core::event::Notice;
-use touchdown_core::sample::Sample;
+use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
-use touchdown_protocol::link::Refusal;
 use touchdown_protocol::wire::Incoming;
 use touchdown_rotor::error::ConfigError;
 
-use super::bus::{Bus, SpiRegisters};
-use super::held::{self, Held};
-use super::inputs::{InputRegisters, Inputs};
-use super::line::LineRegisters;
-use super::slots::{self, ConfigFlash};
-use super::{Abilities, Board, SAMPLE_RATE_HZ, image, record};
+pub use self::bus::{Bus, CycleDelay, SpiRegisters};
+use self::held::Held;
+pub use self::inputs::{InputRegisters, Inputs};
+pub use self::line::{Line, LineRegisters, RING_BYTES};
+pub use self::platform::ChipPlatform;
+pub use self::slots::ConfigFlash;
+use super::{Abilities, Board, SAMPLE_RATE_HZ};
 use crate::drop_log::DropLog;
 use crate::intake::Intake;
+use crate::journal;
 use crate::main_loop::MainLoop;
-use crate::memory::{self, Memory};
+use crate::memory::Memory;
 use crate::overrun::Overruns;
 use crate::platform::{Platform, SampleSource};
 use crate::power_on::{InForce, PowerOn};
@@ -36,31 +45,24 @@ pub type ChipLog<C> = DropLog<W25q<Bus<<C as Chip>::Spi>, Wait<C>>, LOG_SLOTS>;
 type Wait<C> = <<C as Chip>::Spi as SpiRegisters>::Wait;
 const LOG_SLOTS: usize = 42;
 
-/// Pins of the outputs.
+/// Pins of the outputs, and the watchdog that makes them fail-safe against a stuck core.
 pub trait OutputRegisters {
-    /// Sets all levels at once.
-    fn drive(&self, outputs: Outputs);
+    /// Sets all levels at once, whatever else the program holds: to take the current off is the first act of one that
+    /// stops, and of the guard on top.
+    fn drive(outputs: Outputs);
 
-    /// Takes the current off all, whatever else the program holds: the first act of one that stops, and of the guard on
-    /// top.
-    fn drop_now();
-}
-
-/// Resets the core, and so takes the current off the outputs, when good ticks stay away for 2 ms.
-pub trait Watchdog {
-    /// Starts it; it stands still while a debugger halts the core.
-    fn start(&self);
+    /// Starts the watchdog: it resets the core, and so takes the current off the outputs, when good ticks stay away for
+    /// 2 ms. It stands still while a debugger halts the core.
+    fn start_watchdog(&self);
 
     /// Gives it another 2 ms.
     fn feed(&self);
 }
 
 /// Registers of a chip.
-pub trait Chip: Sized + 'static {
-    /// Of the outputs.
-    type Pins: OutputRegisters;
-    /// Of the watchdog.
-    type Watchdog: Watchdog;
+pub trait Chip: ConfigFlash + Sized + 'static {
+    /// Of outputs and watchdog.
+    type Outputs: OutputRegisters;
     /// The converter.
     type Source: SampleSource;
     /// What comes with the positions.
@@ -83,16 +85,8 @@ pub trait Chip: Sized + 'static {
     /// What interrupts and main loop share.
     fn tasks() -> &'static ChipTasks<Self>;
 
-    /// Takes the current off the outputs.
-    fn drop_outputs() {
-        Self::Pins::drop_now();
-    }
-
     /// A word of the noise source; none where it fails.
     fn word(&self) -> Option<u32>;
-
-    /// Keeps a valid configuration.
-    fn store(&self, block: &[u8]) -> Result<(), Refusal>;
 
     /// Forgets that the watchdog has bitten.
     fn forget_reset(&self);
@@ -100,16 +94,13 @@ pub trait Chip: Sized + 'static {
 
 /// What the tick has of the chip.
 pub struct ChipBoard<C: Chip> {
-    pins: C::Pins,
-    watchdog: C::Watchdog,
+    outputs: C::Outputs,
     block: InForce,
 }
 
 impl<C: Chip> Board for ChipBoard<C> {
-    fn report(&mut self, _: &Notice) {}
-
     fn drive(&mut self, shown: Shown) {
-        self.pins.drive(shown.outputs);
+        C::Outputs::drive(shown.outputs);
     }
 
     fn config(&self) -> &[u8] {
@@ -117,7 +108,7 @@ impl<C: Chip> Board for ChipBoard<C> {
     }
 
     fn feed(&mut self) {
-        self.watchdog.feed();
+        self.outputs.feed();
     }
 }
 
@@ -133,35 +124,36 @@ impl<C: Chip> Sampling<C> {
     /// Takes what was converted; whether the outputs must be safe now.
     fn take(&mut self) -> bool {
         let lost = self.overruns.tick(self.source.number());
+        let (spin, levitated) = (self.inputs.spin(), self.inputs.levitated());
+        let counts = self.source.take();
         let sample = Sample {
-            spin: self.inputs.spin(),
-            levitated: self.inputs.levitated(),
-            ..self.source.take()
+            counts: counts.unwrap_or_default(),
+            valid: if counts.is_some() { 0b1111 } else { 0 },
+            spin,
+            levitated,
+            edges: [None; TACHOMETERS],
         };
         let arrival = Incoming {
-            sample,
             service: self.inputs.service(),
-            clear: false,
+            ..sample.into()
         };
         self.intake.take(arrival, lost)
     }
 }
 
 /// The configuration in force, and what was wrong at power-on.
-pub fn check<F: ConfigFlash>(
-    fallback: Settings,
-    abilities: &Abilities,
-    has_bitten: bool,
-) -> (InForce, Settings, Faults) {
+pub fn check<C: Chip>(fallback: Settings, has_bitten: bool) -> (InForce, Settings, Faults) {
     let found = PowerOn {
-        stored: slots::load::<F>(),
+        stored: slots::load::<C>(),
         fallback,
         is_configured: false,
-        is_whole: image::is_whole(F::START),
+        is_whole: image::is_whole(C::START),
         crash: record::read(),
         has_bitten,
     };
-    found.check(abilities)
+    let checked = found.check(&C::ABILITIES);
+    journal::config(&checked.1.monitor);
+    checked
 }
 
 /// The log in the chip, where one answers: without it the monitor works all the same.
@@ -181,9 +173,9 @@ pub fn mount<C: Chip>(bus: Bus<C::Spi>) -> Option<ChipLog<C>> {
 #[repr(C)]
 pub struct ChipTasks<C: Chip> {
     sampling: Held<Sampling<C>>,
-    pub(super) tick: Held<TickTask<'static, ChipBoard<C>>>,
+    tick: Held<TickTask<'static, ChipBoard<C>>>,
     /// Cycle counter at the last sample.
-    pub(super) sampled: AtomicU32,
+    sampled: AtomicU32,
 }
 
 impl<C: Chip> ChipTasks<C> {
@@ -196,59 +188,11 @@ impl<C: Chip> ChipTasks<C> {
         }
     }
 
-    /// Puts the tick in its place, with the outputs' pins and the watchdog, which runs from now on.
-    pub fn start_tick(
-        &'static self,
-        memory: &'static mut Memory,
-        (block, settings, found): (InForce, &Settings, Faults),
-        (pins, watchdog): (C::Pins, C::Watchdog),
-        log: Option<&ChipLog<C>>,
-    ) -> Option<(Intake<'static>, MainLoop)> {
-        let counters = log.map(ChipLog::<C>::counters);
-        let boot = counters.map_or(0, |it| it.boots);
-        let board = ChipBoard::<C> {
-            pins,
-            watchdog,
-            block,
-        };
-        let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
-        let filled = memory.fill(settings, found, boot, board);
-        let (intake, tick) = filled.inspect_err(refused).ok()?;
-        tick.app.recall(counters.and_then(|it| it.uncleared));
-        let forecast = memory::forecast_task(&settings.monitor)
-            .inspect_err(refused)
-            .ok()?;
-        tick.desk.board.watchdog.start();
-        self.tick.put(tick);
-        let below = MainLoop::new(settings.key, SAMPLE_RATE_HZ as f32, forecast);
-        Some((intake, below))
-    }
-
-    /// Lets samples come, by this interrupt.
-    pub fn start_sampling(
-        &'static self,
-        core: &mut Peripherals,
-        interrupt: impl InterruptNumber,
-        source: C::Source,
-        inputs: Inputs<C::Inputs>,
-        intake: Intake<'static>,
-    ) {
-        core.DCB.enable_trace();
-        core.DWT.enable_cycle_counter();
-        self.sampling.put(Sampling {
-            source,
-            inputs,
-            overruns: Overruns::default(),
-            intake,
-        });
-        held::unmask(core, interrupt);
-    }
-
     /// The converter has a sample.
     pub fn on_converted(&'static self) {
         self.sampled.store(DWT::cycle_count(), Ordering::Relaxed);
         if self.sampling.with(Sampling::take) == Some(true) {
-            C::Pins::drop_now();
+            C::Outputs::drive(Outputs::SAFE);
         }
         SCB::set_pendsv();
     }
@@ -256,6 +200,55 @@ impl<C: Chip> ChipTasks<C> {
     /// PendSV: samples wait.
     pub fn on_waiting(&'static self) {
         while self.tick.with(TickTask::step) == Some(true) {}
+    }
+}
+
+/// Parts of a chip that are up, the converter stopped.
+pub struct ChipParts<C: Chip> {
+    /// Without current, the watchdog not started.
+    pub outputs: C::Outputs,
+    /// The converter.
+    pub source: C::Source,
+    /// What comes with the positions.
+    pub inputs: Inputs<C::Inputs>,
+    /// What the main loop has of it.
+    pub platform: ChipPlatform<C>,
+}
+
+/// What [`run`] runs.
+pub type Started<C> = Option<(MainLoop, ChipPlatform<C>)>;
+
+impl<C: Chip> ChipParts<C> {
+    /// Puts tick and sampling in their places: the watchdog runs from now on, and samples come by this interrupt.
+    pub fn start(
+        self,
+        memory: &'static mut Memory,
+        (block, settings, found): (InForce, Settings, Faults),
+        mut core: Peripherals,
+        interrupt: impl InterruptNumber,
+    ) -> Started<C> {
+        let counters = self.platform.log.as_ref().map(ChipLog::<C>::counters);
+        let boot = counters.map_or(0, |it| it.boots);
+        let outputs = self.outputs;
+        let board = ChipBoard::<C> { outputs, block };
+        let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
+        let filled = memory.fill(&settings, found, boot, board);
+        let (intake, tick, below) = filled.inspect_err(refused).ok()?;
+        tick.app.recall(counters.and_then(|it| it.uncleared));
+        tick.desk.board.outputs.start_watchdog();
+        let tasks = C::tasks();
+        tasks.tick.put(tick);
+        self.source.start();
+        core.DCB.enable_trace();
+        core.DWT.enable_cycle_counter();
+        tasks.sampling.put(Sampling {
+            source: self.source,
+            inputs: self.inputs,
+            overruns: Overruns::default(),
+            intake,
+        });
+        held::unmask(&mut core, interrupt);
+        Some((below, self.platform))
     }
 }
 
@@ -271,25 +264,49 @@ pub fn run<P: Platform>(started: Option<(MainLoop, P)>) -> ! {
     }
 }
 
-/// The end of an image that panics, after a fault of the core, or after an interrupt that nothing serves: outputs dropped
-/// by this function, a record left, reset.
+/// The image of a chip, which this function starts and this interrupt samples.
+#[macro_export]
+macro_rules! chip_image {
+    ($chip:ident, $start:path, $sampling:ident) => {
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            static mut MEMORY: $crate::memory::Memory = $crate::memory::Memory::empty();
+            $crate::board::silicon::run($start(MEMORY))
+        }
+
+        #[interrupt]
+        fn $sampling() {
+            <$chip as $crate::board::silicon::Chip>::tasks().on_converted();
+        }
+
+        #[cortex_m_rt::exception]
+        fn PendSV() {
+            <$chip as $crate::board::silicon::Chip>::tasks().on_waiting();
+        }
+
+        $crate::last_acts!($chip);
+    };
+}
+
+/// The end of a chip's image that panics, after a fault of the core, or after an interrupt that nothing serves: outputs
+/// dropped, a record left, reset.
 #[macro_export]
 macro_rules! last_acts {
-    ($drop_outputs:path) => {
+    ($chip:ty) => {
         #[panic_handler]
         fn panic(info: &core::panic::PanicInfo) -> ! {
-            $crate::board::record::on_panic($drop_outputs, info)
+            $crate::board::silicon::record::on_panic::<$chip>(info)
         }
 
         // The runtime asks for unsafe functions; there is nothing unsafe in them.
         #[cortex_m_rt::exception]
         unsafe fn HardFault(frame: &cortex_m_rt::ExceptionFrame) -> ! {
-            $crate::board::record::on_hard_fault($drop_outputs, frame.pc(), frame.lr())
+            $crate::board::silicon::record::on_hard_fault::<$chip>(frame.pc(), frame.lr())
         }
 
         #[cortex_m_rt::exception]
         unsafe fn DefaultHandler(number: i16) -> ! {
-            $crate::board::record::on_stray_interrupt($drop_outputs, number)
+            $crate::board::silicon::record::on_stray_interrupt::<$chip>(number)
         }
     };
 }

@@ -6,8 +6,10 @@ use core::panic::PanicInfo;
 use core::ptr::addr_of_mut;
 
 use cortex_m::peripheral::SCB;
+use touchdown_protocol::controller::Outputs;
 
-use crate::crash::{Cause, Crash, FaultStatus, WORDS};
+use super::{Chip, OutputRegisters as _};
+use crate::crash::{Cause, Crash, WORDS};
 
 #[unsafe(link_section = ".uninit.crash")]
 static mut RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
@@ -34,50 +36,40 @@ fn write(words: [u32; WORDS]) {
     }
 }
 
-/// What the core says of the fault that it is in.
-fn fault_status() -> FaultStatus {
+/// With what the core says of the fault that it is in.
+fn with_fault_status(crash: Crash) -> Crash {
     /// ARMv7-M, CFSR: bus fault address valid.
     const BFARVALID: u32 = 1 << 15;
     // SAFETY: reads only.
     let block = unsafe { &*SCB::PTR };
     let configurable = block.cfsr.read();
     let is_valid = configurable & BFARVALID != 0;
-    FaultStatus {
-        configurable,
-        hard: block.hfsr.read(),
-        address: if is_valid { block.bfar.read() } else { 0 },
+    let address = if is_valid { block.bfar.read() } else { 0 };
+    Crash {
+        status: [configurable, block.hfsr.read(), address],
+        ..crash
     }
 }
 
-/// By `drop_outputs` takes the current off, leaves the record and resets.
-fn stop(drop_outputs: fn(), crash: impl FnOnce() -> Crash) -> ! {
+/// Takes the current off the outputs, leaves the record and resets.
+fn stop<C: Chip>(crash: impl FnOnce() -> Crash) -> ! {
     cortex_m::interrupt::disable();
-    drop_outputs();
+    C::Outputs::drive(Outputs::SAFE);
     write(crash().encode());
     SCB::sys_reset()
 }
 
 /// The end of a program that panics.
-pub fn on_panic(drop_outputs: fn(), info: &PanicInfo) -> ! {
-    stop(drop_outputs, || Crash::of_panic(info))
+pub fn on_panic<C: Chip>(info: &PanicInfo) -> ! {
+    stop::<C>(|| Crash::of_panic(info))
 }
 
 /// Likewise after a fault of the core at `pc`, called from `lr`.
-pub fn on_hard_fault(drop_outputs: fn(), pc: u32, lr: u32) -> ! {
-    stop(drop_outputs, || Crash {
-        cause: Cause::HardFault,
-        place: pc,
-        detail: lr,
-        status: fault_status(),
-    })
+pub fn on_hard_fault<C: Chip>(pc: u32, lr: u32) -> ! {
+    stop::<C>(|| with_fault_status(Crash::new(Cause::HardFault, pc, lr)))
 }
 
 /// Likewise after an interrupt that nothing serves.
-pub fn on_stray_interrupt(drop_outputs: fn(), number: i16) -> ! {
-    stop(drop_outputs, || Crash {
-        cause: Cause::StrayInterrupt,
-        place: number as u32,
-        detail: 0,
-        status: FaultStatus::default(),
-    })
+pub fn on_stray_interrupt<C: Chip>(number: i16) -> ! {
+    stop::<C>(|| Crash::new(Cause::StrayInterrupt, number as u32, 0))
 }
