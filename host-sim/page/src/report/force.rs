@@ -1,6 +1,5 @@
 //! What the wall took: the impulse of each impact, and its force over time where the materials are known.
 
-use super::timeline::percent;
 use super::window::Window;
 use maud::{Markup, html};
 use touchdown_base::history::{History, Impact};
@@ -59,7 +58,7 @@ fn no_force(first: &Impact, materials: bool) -> Markup {
 }
 
 fn impulses(window: Window, impacts: &[Impact]) -> Markup {
-    let (x, factor) = window.axis(6.0);
+    let x = window.axis();
     let milli = |impact: &Impact| impact.normal_impulse * 1e3;
     let highest = impacts.iter().map(milli).fold(0.0, f64::max);
     let y = Axis::new(0.0, 1.1 * highest, "normal impulse, mN s", 4.0);
@@ -72,10 +71,9 @@ fn impulses(window: Window, impacts: &[Impact]) -> Markup {
     };
     let front = html! {
         @for impact in impacts {
-            @let (at, top) = (impact.state.time * factor, milli(impact));
-            @if x.shows(at) {
-                line.hit x1=(percent(x.fraction(at))) x2=(percent(x.fraction(at)))
-                    y1=(HEIGHT) y2=(HEIGHT * (1.0 - y.fraction(top))) {}
+            @let (at, top) = (x.percent(impact.state.time), milli(impact));
+            @if x.shows(impact.state.time) {
+                line.hit x1=(at) x2=(at) y1=(HEIGHT) y2=(HEIGHT * (1.0 - y.fraction(top))) {}
             }
         }
     };

@@ -150,16 +150,14 @@ fn lines<const N: usize>(
     let all = || values.iter().flat_map(|(_, values)| values).copied();
     let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
     let margin = 0.06 * (high - low);
-    let (x, factor) = window.axis(6.0);
-    let y = Axis::new(low - margin, high + margin, unit, 5.0);
     let chart = Chart {
         title,
         description: "Of the reference, over time.",
-        x: &x,
-        y: &y,
+        x: &window.axis(),
+        y: &Axis::new(low - margin, high + margin, unit, 5.0),
         height: HEIGHT,
     };
-    let points = |index: usize| values.iter().map(move |it| (it.0 * factor, it.1[index]));
+    let points = |index: usize| values.iter().map(move |it| (it.0, it.1[index]));
     let curves = html! {
         @for (index, (_, class)) in names.iter().enumerate() { (chart.curve(class, points(index))) }
     };

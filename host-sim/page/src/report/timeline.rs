@@ -4,7 +4,7 @@ use super::window::Window;
 use maud::{Markup, html};
 use strum::VariantArray;
 use touchdown_base::history::{History, Phase, PhaseKind};
-use touchdown_chart::plot::{Axis, columns, key};
+use touchdown_chart::plot::{Axis, columns, key, percent};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_scene::Scene;
@@ -23,7 +23,7 @@ const LETTER: f64 = 6.4;
 
 /// Draws the strip for a stretch of time.
 pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
-    let (x, factor) = window.axis(6.0);
+    let x = window.axis();
     let events = &outcome.detection.events;
     let seen_row = |name: &str, time: fn(&DetectedEvent) -> f64| {
         let phases = detected_phases(&outcome.detection, window.end, time);
@@ -42,7 +42,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
     rows.push(seen_row("Detector, by estimated onset", |it| it.onset_s));
     let declared = seen_row("Detector, as declared at the time", |it| it.declared_s);
     rows.push(declared);
-    let (labels, lanes) = labels(events, &x, factor);
+    let (labels, lanes) = labels(events, &x);
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;
     html! {
@@ -57,7 +57,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
                 @for (number, (name, phases, hits)) in rows.iter().enumerate() {
                     @let top = number as f64 * ROW + 20.0;
                     text.row x="0" y=(top - 6.0) { (name) }
-                    (bar(phases, hits, &x, factor, top))
+                    (bar(phases, hits, &x, top))
                 }
                 @for label in &labels { (label.line(bars)) }
                 @for label in &labels { (label.text(bars)) }
@@ -75,10 +75,10 @@ pub fn legend() -> Markup {
     }
 }
 
-fn bar(phases: &[Phase], hits: &[f64], x: &Axis, factor: f64, top: f64) -> Markup {
+fn bar(phases: &[Phase], hits: &[f64], x: &Axis, top: f64) -> Markup {
     html! {
         rect.void x="0" y=(top) width="100%" height=(BAR) {}
-        @for (phase, from, to) in visible(phases, x, factor) {
+        @for (phase, from, to) in visible(phases, x) {
             rect class={ "bar " (<&str>::from(phase)) }
                 x=(percent(from)) width=(percent(to - from)) y=(top) height=(BAR) {}
             @if (to - from) * NARROW > phase_name(phase).len() as f64 * LETTER + 4.0 {
@@ -86,20 +86,20 @@ fn bar(phases: &[Phase], hits: &[f64], x: &Axis, factor: f64, top: f64) -> Marku
                     y=(top + BAR - 7.5) text-anchor="middle" { (phase_name(phase)) }
             }
         }
-        @for at in strokes(hits, x, factor) {
+        @for at in strokes(hits, x) {
             line.hit x1=(at) x2=(at) y1=(top) y2=(top + 6.0) {}
         }
     }
 }
 
 /// Phases on the axis with their ends as fractions of it; of phases too short to be seen, as many as fit.
-pub fn visible(phases: &[Phase], x: &Axis, factor: f64) -> Vec<(PhaseKind, f64, f64)> {
+pub fn visible(phases: &[Phase], x: &Axis) -> Vec<(PhaseKind, f64, f64)> {
     const NARROWEST: f64 = 5e-4;
     let mut shown: Vec<(PhaseKind, f64, f64)> = Vec::new();
     for phase in phases {
         let drawn = shown.last().map_or(0.0, |last| last.2);
-        let from = x.fraction(phase.start_s * factor).max(drawn);
-        let to = x.fraction(phase.end_s * factor).min(1.0);
+        let from = x.fraction(phase.start_s).max(drawn);
+        let to = x.fraction(phase.end_s).min(1.0);
         if to > drawn && from < 1.0 {
             shown.push((phase.phase, from, to.max(from + NARROWEST)));
         }
@@ -108,21 +108,12 @@ pub fn visible(phases: &[Phase], x: &Axis, factor: f64) -> Vec<(PhaseKind, f64, 
 }
 
 /// Positions of the visible times, without those that fall on the one before.
-pub fn strokes(times: &[f64], x: &Axis, factor: f64) -> Vec<String> {
-    let shown = times
-        .iter()
-        .map(|time| time * factor)
-        .filter(|&it| x.shows(it));
-    let mut places: Vec<String> = shown
-        .map(|time| format!("{:.1}%", 100.0 * x.fraction(time)))
-        .collect();
+pub fn strokes(times: &[f64], x: &Axis) -> Vec<String> {
+    let shown = times.iter().filter(|time| x.shows(**time));
+    let places = shown.map(|time| format!("{:.1}%", 100.0 * x.fraction(*time)));
+    let mut places: Vec<String> = places.collect();
     places.dedup();
     places
-}
-
-/// A fraction of the width.
-pub fn percent(fraction: f64) -> String {
-    format!("{:.2}%", 100.0 * fraction)
 }
 
 /// The detector's view as phases, each event taking effect at the time that `time` gives.
@@ -199,7 +190,7 @@ impl Label {
 
 /// Labels of the declared events other than impacts, in lanes so that none covers another; what finds
 /// no lane is left to the table.
-fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize) {
+fn labels(events: &[DetectedEvent], x: &Axis) -> (Vec<Label>, usize) {
     let mut labels: Vec<Label> = Vec::new();
     for event in events
         .iter()
@@ -212,7 +203,7 @@ fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize
             (event.withdrawn_s, format!("{name} withdrawn")),
         ];
         for (time, text) in fates {
-            let Some(time) = time.map(|time| time * factor).filter(|&it| x.shows(it)) else {
+            let Some(time) = time.filter(|time| x.shows(*time)) else {
                 continue;
             };
             let mut label = Label {

@@ -41,12 +41,8 @@ impl Window {
             return whole;
         };
         let natural = (clearance / gravity).sqrt();
-        let longest = if natural.is_finite() {
-            LONGEST * natural
-        } else {
-            f64::INFINITY
-        };
-        let length = (1.3 * settled).min(longest);
+        // Infinite without gravity; `min` leaves out what is no number.
+        let length = (1.3 * settled).min(LONGEST * natural);
         let lead = truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
         let start = if lead { -0.08 * length } else { 0.0 };
         let window = Self {
@@ -60,14 +56,13 @@ impl Window {
         }
     }
 
-    /// Its time axis and the factor from seconds to the axis' unit.
-    pub fn axis(self, ticks: f64) -> (Axis, f64) {
-        let (factor, label) = if self.end - self.start > 2.0 {
+    /// Its time axis, for s.
+    pub fn axis(self) -> Axis {
+        let (scale, label) = if self.end - self.start > 2.0 {
             (1.0, "time since release, s")
         } else {
             (1e3, "time since release, ms")
         };
-        let axis = Axis::new(self.start * factor, self.end * factor, label, ticks);
-        (axis, factor)
+        Axis::scaled(scale, self.start, self.end, label, 6.0)
     }
 }
