@@ -99,18 +99,10 @@ impl Axis {
         let decimals = (-self.step.log10().floor()).max(0.0) as usize;
         let first = (self.lo / self.step - 1e-9).ceil() as i64;
         let last = (self.hi / self.step + 1e-9).floor() as i64;
-        (first..=last).map(move |number| {
-            let value = number as f64 * self.step;
-            let text = format!("{value:.decimals$}");
-            (
-                value,
-                if self.log {
-                    ten_to(&text)
-                } else {
-                    minus(&text)
-                },
-            )
-        })
+        let show = if self.log { ten_to } else { minus };
+        (first..=last)
+            .map(|number| number as f64 * self.step)
+            .map(move |value| (value, show(&format!("{value:.decimals$}"))))
     }
 }
 

@@ -34,7 +34,7 @@ pub struct Waveform<'a> {
 }
 
 /// An axis that reaches somewhat beyond the farthest place, m, to either side.
-pub fn displacement(name: &str, farthest: f64) -> Axis {
+pub fn displacement_axis(name: &str, farthest: f64) -> Axis {
     let reach = 1.12 * farthest;
     Axis::scaled(1e6, -reach, reach, &format!("{name}, \u{b5}m"), 5.0)
 }
@@ -53,7 +53,7 @@ pub fn waveform(shown: &Waveform<'_>) -> Markup {
         title: name,
         description: shown.description,
         x: &x,
-        y: &displacement(name, farthest),
+        y: &displacement_axis(name, farthest),
         height: HEIGHT,
     };
     let curve = |(class, points): &Curve<'_>| {

@@ -1,8 +1,8 @@
 //! What the terminal shows: the true phases beside what the detector said, in 80 columns.
 
 use touchdown_core::event::EventKind;
-use touchdown_core::health::Condition;
 
+use crate::report::monitor::unsound;
 use touchdown_base::history::{History, Phase, PhaseKind};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
@@ -10,7 +10,7 @@ use touchdown_run::matching::{Match, Matches, match_events, regime_event};
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
-use touchdown_scene::names::{channel_name, phase_name, regime_name};
+use touchdown_scene::names::{phase_name, regime_name};
 use touchdown_scene::scales::validity;
 
 /// Phases and impacts that are listed before the rest is summed up.
@@ -320,11 +320,8 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
 
 /// What the detector was fed, and the fingerprint by which two machines are compared.
 fn samples_line(detection: &Detection) -> String {
-    let conditions = (0..).zip(detection.summary.conditions);
-    let bad: String = conditions
-        .filter(|(_, condition)| *condition != Condition::Ok)
-        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it))
-        .collect();
+    let bad = unsound(detection).map(|(channel, it)| format!("; channel {channel} {it}"));
+    let bad: String = bad.collect();
     format!(
         "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
         detection.summary.samples, detection.summary.faults, detection.summary.state_hash

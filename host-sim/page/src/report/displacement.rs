@@ -1,13 +1,11 @@
 //! Displacement x and y against time.
 
-use super::stretch::far;
-use super::timeline::{strokes, visible};
-use super::window::Window;
+use super::timeline::{onsets, strokes, visible};
+use super::window::{Window, far};
 use maud::{Markup, html};
 use touchdown_chart::plot::{Axis, Chart, key, percent};
-use touchdown_chart::waveform::displacement as displacement_axis;
-use touchdown_core::event::EventKind;
-use touchdown_run::outcome::{DetectedEvent, Outcome, TracePoint};
+use touchdown_chart::waveform::displacement_axis;
+use touchdown_run::outcome::{Outcome, TracePoint};
 use touchdown_scene::Scene;
 
 const HEIGHT: f64 = 190.0;
@@ -81,11 +79,7 @@ fn bands(outcome: &Outcome, x: &Axis) -> Markup {
 }
 
 fn marks(outcome: &Outcome, x: &Axis) -> Markup {
-    let onsets = |impacts: bool| -> Vec<f64> {
-        let wanted = |it: &&DetectedEvent| (it.event == EventKind::Impact) == impacts;
-        let events = outcome.detection.events.iter();
-        events.filter(wanted).map(|it| it.onset_s).collect()
-    };
+    let onsets = |impacts| onsets(&outcome.detection, impacts);
     let truth = &outcome.truth.whole;
     let changes: Vec<f64> = truth.phases.iter().map(|it| it.start_s).collect();
     let hits: Vec<f64> = truth.impacts.iter().map(|it| it.state.time).collect();

@@ -24,9 +24,8 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
         vec![(None, &outcome.truth.whole, scene.retainer.restitution)]
     } else {
         let rings = scene.rings().iter().zip(&outcome.truth.rings);
-        rings
-            .map(|(ring, truth)| (Some(&*ring.name), truth, ring.retainer.restitution))
-            .collect()
+        let rings = rings.map(|(it, truth)| (Some(&*it.name), truth, it.retainer.restitution));
+        rings.collect()
     };
     html! {
         @for (name, truth, restitution) in rings {
@@ -98,13 +97,11 @@ fn pulse(first: &Impact, meeting: &Meeting) -> Markup {
     let history = meeting.history();
     let peak = history.iter().map(|it| it.1).fold(0.0, f64::max);
     let duration = history.last().map_or(0.0, |it| it.0);
-    let x = Axis::new(0.0, 1.05e6 * duration, "\u{b5}s after the touch", 6.0);
-    let y = Axis::new(0.0, 1.1 * peak, "normal force, N", 4.0);
     let chart = Chart {
         title: "Force of the first impact",
         description: "Normal force over time, from touch to release, of a compliant contact of the scene's materials.",
-        x: &x,
-        y: &y,
+        x: &Axis::new(0.0, 1.05e6 * duration, "\u{b5}s after the touch", 6.0),
+        y: &Axis::new(0.0, 1.1 * peak, "normal force, N", 4.0),
         height: HEIGHT,
     };
     let curve = chart.curve("motion", history.iter().map(|it| (it.0 * 1e6, it.1)));

@@ -2,22 +2,17 @@
 //! cursor and a zoom to the charts.
 
 mod accuracy;
-mod controller;
 mod displacement;
-mod energy;
 pub mod force;
-mod foresight;
-mod health;
+pub(crate) mod monitor;
 mod moving;
 pub mod orbit;
 mod parameters;
 mod phase_plane;
 pub mod regions;
-mod severity;
 pub(crate) mod spectrum;
-mod stretch;
 pub mod tables;
-mod timeline;
+pub(crate) mod timeline;
 mod verdict;
 pub mod window;
 
@@ -95,14 +90,14 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
             (spectra(whole, scene, outcome))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
-        section { h2 { "Controller" } (controller::controller(&outcome.conduct, Timebase::of(scene))) }
-        section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
+        section { h2 { "Controller" } (monitor::controller(&outcome.conduct, Timebase::of(scene))) }
+        section { h2 { "Forecast of whirl" } (monitor::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(scene, outcome, &matches)) }
-        section { h2 { "Severity" } (severity::severity(outcome)) }
-        section { h2 { "Sensors" } (health::health(outcome)) }
+        section { h2 { "Severity" } (monitor::severity(outcome)) }
+        section { h2 { "Sensors" } (monitor::sensors(outcome)) }
         section { h2 { "Accuracy of the model" } (accuracy::accuracy(scene, outcome)) }
         @if let Some(ledger) = &outcome.model.ledger {
-            section { h2 { "Energy" } (energy::energy(ledger)) }
+            section { h2 { "Energy" } (accuracy::energy(ledger)) }
         }
         section { h2 { "Parameters" } (parameters::parameters(scene)) }
         section { h2 { "Not modelled" } (parameters::limits(scene, outcome.model.histories.whole.has_forces())) }

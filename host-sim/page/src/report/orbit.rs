@@ -1,6 +1,6 @@
 //! The path of the rotor's centre inside the clearance circle.
 
-use super::stretch::{far, runs};
+use super::window::{far, runs};
 use maud::{Markup, html};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
@@ -76,8 +76,8 @@ pub fn draw(orbit: &Orbit) -> Markup {
     }
 }
 
-fn place(point: &TracePoint, scale: f64) -> (f64, f64) {
-    let [x, y] = point.state.position;
+/// In drawing units.
+fn place([x, y]: [f64; 2], scale: f64) -> (f64, f64) {
     (x * scale, -y * scale)
 }
 
@@ -86,7 +86,7 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
     let mut path = String::new();
     let mut last: Option<((f64, f64), &TracePoint)> = None;
     for point in run {
-        let to = place(point, scale);
+        let to = place(point.state.position, scale);
         if !(to.0.is_finite() && to.1.is_finite()) {
             continue;
         }
@@ -102,9 +102,7 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
                 let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
                 write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
             }
-            Some((_, from)) if far(from, point, clearance) => {
-                write!(path, "M{x} {y}h0")
-            }
+            Some((_, from)) if far(from, point, clearance) => write!(path, "M{x} {y}h0"),
             Some(_) => write!(path, "L{x} {y}"),
         };
         last = Some((to, point));
@@ -140,12 +138,9 @@ fn turn(from: &TracePoint, to: &TracePoint) -> f64 {
 /// In drawing units, those that fall on others left out.
 fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
     let mut drawn: Vec<(f64, f64)> = Vec::new();
-    for [x, y] in places {
-        let at = (x * scale, -y * scale);
-        if drawn
-            .iter()
-            .all(|it| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5)
-        {
+    for at in places.iter().map(|it| place(*it, scale)) {
+        let apart = |it: &(f64, f64)| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5;
+        if drawn.iter().all(apart) {
             drawn.push(at);
         }
     }
@@ -154,19 +149,21 @@ fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
 
 fn spin_arrow(spin: f64) -> Markup {
     let rpm = significant(spin.abs() * 30.0 / PI, 5);
-    let (path, turn) = match spin.total_cmp(&0.0) {
-        _ if spin == 0.0 => ("", "no spin".to_owned()),
-        std::cmp::Ordering::Greater => (
+    let (path, turn) = match spin {
+        0.0 => ("", ""),
+        0.0.. => (
             "M194 -70A206 206 0 0 0 150 -141M150 -141l1 12M150 -141l11 5",
-            format!("spin {rpm} rpm \u{21ba}"),
+            "\u{21ba}",
         ),
         _ => (
             "M150 -141A206 206 0 0 1 194 -70M194 -70l1 -12M194 -70l-10 -7",
-            format!("spin {rpm} rpm \u{21bb}"),
+            "\u{21bb}",
         ),
     };
     html! {
         path.arrow d=(path) {}
-        text.label x="232" y="-196" text-anchor="end" { (turn) }
+        text.label x="232" y="-196" text-anchor="end" {
+            @if spin == 0.0 { "no spin" } @else { "spin " (rpm) " rpm " (turn) }
+        }
     }
 }

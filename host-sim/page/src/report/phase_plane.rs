@@ -1,7 +1,7 @@
 //! Angular speed against angle while the rotor is at the wall.
 
 use super::regions::areas;
-use super::stretch::{far, runs};
+use super::window::{far, runs};
 use maud::{Markup, html};
 use touchdown_base::history::RotorState;
 use touchdown_base::regions::Plane;

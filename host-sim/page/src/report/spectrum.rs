@@ -107,10 +107,8 @@ fn waterfall(spectra: &Spectra<'_>) -> Markup {
     };
     let shown = |index: usize| found.frequency(index).abs() <= reach;
     let bins: Vec<usize> = (0..first.power.len()).filter(|it| shown(*it)).collect();
-    let powers = found
-        .spectra
-        .iter()
-        .flat_map(|it| bins.iter().map(|bin| it.power[*bin]));
+    let spectra = found.spectra.iter();
+    let powers = spectra.flat_map(|it| bins.iter().map(|bin| it.power[*bin]));
     let most = powers.fold(f64::MIN_POSITIVE, f64::max);
     let half = 0.5 * found.resolution;
     let mut shades: Vec<Pen> = (0..SHADES).map(|_| chart.pen()).collect();

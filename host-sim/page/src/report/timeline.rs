@@ -107,6 +107,13 @@ pub fn visible(phases: &[Phase], x: &Axis) -> Vec<(PhaseKind, f64, f64)> {
     shown
 }
 
+/// Estimated onsets of the declared impacts, or of all other events, s.
+pub fn onsets(detection: &Detection, impacts: bool) -> Vec<f64> {
+    let events = detection.events.iter();
+    let wanted = events.filter(|it| (it.event == EventKind::Impact) == impacts);
+    wanted.map(|it| it.onset_s).collect()
+}
+
 /// Positions of the visible times, without those that fall on the one before.
 pub fn strokes(times: &[f64], x: &Axis) -> Vec<String> {
     let shown = times.iter().filter(|time| x.shows(**time));

@@ -1,9 +1,10 @@
 //! The head of the page: what happened, in a line and a few figures.
 
+use super::accuracy::peak;
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 use touchdown_base::history::{History, PhaseKind, Regime};
-use touchdown_chart::text::{ms, si, significant};
+use touchdown_chart::text::{ms, or_dash, si, significant};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches, regime_event};
 use touchdown_run::outcome::Outcome;
@@ -25,7 +26,7 @@ pub fn verdict(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
             }
             dl.figures {
                 (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
-                (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
+                (figure("Peak impact speed", &or_dash(peak(truth), |it| si(it, "m/s")), &impact_count(truth)))
                 (figure("First contact", &contact.0, contact.1))
                 (fall_figure(outcome, matches))
                 (regime_figure(outcome, matches))
@@ -40,29 +41,22 @@ fn figure(name: &str, value: &str, note: &str) -> Markup {
 
 fn motion(truth: &History) -> String {
     let end = si(truth.end.time, "s");
-    let (what, when) = match truth.regime {
-        Regime::ForwardWhirl => ("The rotor whirls round the retainer with its spin", "after"),
-        Regime::BackwardWhirl => (
-            "The rotor is driven into backward whirl round the retainer",
-            "within",
-        ),
-        Regime::Pendulum => (
-            "No whirl at the end: the rotor swings at the bottom of the retainer",
-            "after",
-        ),
-        Regime::Rest => (
-            "No whirl at the end: the rotor lies still on the retainer",
-            "after",
-        ),
-        Regime::Intermittent => {
-            let times = truth.lift_offs.len();
-            return format!(
-                "No whirl at the end: the rotor keeps lifting off and falling back, {times} times in {end}."
-            );
+    let times = truth.lift_offs.len();
+    let what = match truth.regime {
+        Regime::ForwardWhirl => "The rotor whirls round the retainer with its spin after",
+        Regime::BackwardWhirl => {
+            "The rotor is driven into backward whirl round the retainer within"
         }
-        Regime::Bouncing => ("The rotor is not in permanent contact", "after"),
+        Regime::Pendulum => {
+            "No whirl at the end: the rotor swings at the bottom of the retainer after"
+        }
+        Regime::Rest => "No whirl at the end: the rotor lies still on the retainer after",
+        Regime::Intermittent => &format!(
+            "No whirl at the end: the rotor keeps lifting off and falling back, {times} times in"
+        ),
+        Regime::Bouncing => "The rotor is not in permanent contact after",
     };
-    format!("{what} {when} {end}.")
+    format!("{what} {end}.")
 }
 
 fn detection(outcome: &Outcome, matches: &Matches) -> String {
@@ -72,36 +66,37 @@ fn detection(outcome: &Outcome, matches: &Matches) -> String {
         None => String::new(),
         Some(None) => "The detector missed the free fall.".to_owned(),
         Some(Some(latency)) => {
-            let side = first.map_or(String::new(), |first| {
+            let side = first.map(|first| {
                 let side = if latency < first { "before" } else { "after" };
-                let apart = si((first - latency).abs(), "s");
-                format!(", {apart} {side} the first contact")
+                format!(
+                    ", {} {side} the first contact",
+                    si((first - latency).abs(), "s")
+                )
             });
-            let latency = si(latency, "s");
+            let (latency, side) = (si(latency, "s"), side.unwrap_or_default());
             format!("The detector declared the free fall {latency} after the release{side}.")
         }
     };
     let whirl = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
     for regime in whirl
-        .iter()
-        .filter_map(|&kind| matches.of_kind(kind).next())
+        .into_iter()
+        .filter_map(|it| matches.of_kind(it).next())
     {
-        match regime.latency_s {
-            Some(latency) => {
-                let latency = si(latency, "s");
-                text.push_str(&format!(
-                    " The detector named the whirl {latency} after that contact began."
-                ));
-            }
-            None => text.push_str(" The detector did not name the whirl."),
-        }
+        text += &regime.latency_s.map_or_else(
+            || " The detector did not name the whirl.".to_owned(),
+            |latency| {
+                format!(
+                    " The detector named the whirl {} after that contact began.",
+                    si(latency, "s")
+                )
+            },
+        );
     }
-    match matches.false_events.len() {
-        0 => {}
-        1 => text.push_str(" One of the detector's events is false."),
-        count => text.push_str(&format!(" {count} of the detector's events are false.")),
+    text + &match matches.false_events.len() {
+        0 => String::new(),
+        1 => " One of the detector's events is false.".to_owned(),
+        count => format!(" {count} of the detector's events are false."),
     }
-    text
 }
 
 fn whirl(truth: &History) -> String {
@@ -117,10 +112,6 @@ fn whirl(truth: &History) -> String {
         }
         _ => "no whirl at the end of the run".to_owned(),
     }
-}
-
-fn peak(truth: &History) -> String {
-    super::accuracy::peak(truth).map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
 }
 
 fn impact_count(truth: &History) -> String {
@@ -169,7 +160,5 @@ fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
 
 fn latency(found: Option<&Match>) -> String {
     let latency = found.and_then(|found| found.latency_s);
-    latency.map_or("\u{2013}".to_owned(), |time| {
-        format!("{}\u{a0}ms", ms(time))
-    })
+    or_dash(latency, |time| format!("{}\u{a0}ms", ms(time)))
 }
