@@ -54,12 +54,11 @@ pub fn deconvolve(
     let samples = recording.acceleration[0].len();
     let longest = calibrations.iter().map(|it| it.longest()).max();
     let transform = Transform::holding(samples + longest.unwrap_or(0));
-    let inverses: Vec<Inverse> = (recording.acceleration.iter().zip(quiet))
-        .zip(calibrations)
-        .map(|((signal, quiet), calibration)| {
-            Inverse::new(&transform, signal, quiet, calibration, resolution)
-        })
-        .collect();
+    let axes = recording.acceleration.iter().zip(quiet).zip(calibrations);
+    let inverses = axes.map(|((signal, quiet), calibration)| {
+        Inverse::new(&transform, signal, quiet, calibration, resolution)
+    });
+    let inverses: Vec<Inverse> = inverses.collect();
     let mut search = Search {
         transform: &transform,
         inverses: &inverses,
@@ -112,7 +111,7 @@ impl Search<'_> {
         let mut floor = CLEAR * noise;
         for _ in 0..SEARCHES {
             let size = |k: usize| rest.iter().map(|it| it[k] * it[k]).sum::<f64>().sqrt();
-            let free = |k: &usize| !self.contacts.iter().any(|it| it.contains(k));
+            let free = |k: &usize| self.is_free(*k);
             let peak = (0..end).filter(free).map(size).fold(0.0, f64::max);
             floor = floor.max(FLOOR * peak);
             if peak <= floor {
@@ -121,15 +120,18 @@ impl Search<'_> {
             let level = (TOGETHER * peak).max(floor);
             let strong: Vec<usize> = (0..end).filter(|k| free(k) && size(*k) >= level).collect();
             for k in strong {
-                if !self.contacts.iter().any(|it| it.contains(&k)) {
-                    let contact = self.around(&rest, k, end);
-                    self.contacts.push(contact);
+                if self.is_free(k) {
+                    self.contacts.push(self.around(&rest, k, end));
                 }
             }
             self.merge();
             self.restore();
             rest = self.unexplained();
         }
+    }
+
+    fn is_free(&self, sample: usize) -> bool {
+        !self.contacts.iter().any(|it| it.contains(&sample))
     }
 
     /// The contact around a strong sample: from it up to its peak, then down both sides of that.
@@ -198,14 +200,12 @@ impl Search<'_> {
     }
 
     fn unexplained(&self) -> Vec<Vec<f64>> {
-        (0..self.inverses.len())
-            .map(|axis| {
-                let inverse = &self.inverses[axis];
-                let kept = self.pass(&self.force[axis], &inverse.kept);
-                let pairs = inverse.estimate.iter().zip(kept);
-                pairs.map(|(first, kept)| first - kept).collect()
-            })
-            .collect()
+        let axes = self.inverses.iter().zip(&self.force);
+        let rest = axes.map(|(inverse, force)| {
+            let pairs = inverse.estimate.iter().zip(self.pass(force, &inverse.kept));
+            pairs.map(|(first, kept)| first - kept).collect()
+        });
+        rest.collect()
     }
 
     /// A force through a filter.

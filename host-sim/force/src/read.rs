@@ -50,12 +50,10 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
     };
     let numbered = table.names[0] == "hit";
     let first = usize::from(numbered);
-    let blocks = table
-        .rows
-        .chunk_by(|a, b| !numbered || a.values[0] == b.values[0]);
+    let same = |a: &Row, b: &Row| !numbered || a.values[0] == b.values[0];
     let mut rate: Option<f64> = None;
     let mut hits = Vec::new();
-    for rows in blocks {
+    for rows in table.rows.chunk_by(same) {
         let own = table.rate(&table.clock(rows)?)?;
         let common = *rate.get_or_insert(own);
         if (own / common - 1.0).abs() > SAME_RATE {
@@ -130,14 +128,13 @@ impl Table {
             let row = Row::parse(text, line, &names);
             rows.push(row.map_err(|rule| InputError::at_line(&file, line, rule))?);
         }
+        let fail = |line, rule| Err(InputError::at_line(&file, line, rule));
         if rows.is_empty() {
-            let rule = "there are no rows after the header";
-            return Err(InputError::at_line(&file, 1, rule));
+            return fail(1, "there are no rows after the header");
         }
         if !text.ends_with('\n') {
-            let last = text.lines().count() as u64;
             let rule = "the last line is cut off: it does not end with a newline";
-            return Err(InputError::at_line(&file, last, rule));
+            return fail(text.lines().count() as u64, rule);
         }
         let names = names.into_iter().map(str::to_owned).collect();
         Ok(Self { file, names, rows })
@@ -176,12 +173,9 @@ impl Table {
 impl Row {
     fn parse(text: &str, line: u64, names: &[&str]) -> Result<Self, String> {
         let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-        if fields.len() != names.len() {
-            return Err(format!(
-                "a row needs {} fields, this one has {}",
-                names.len(),
-                fields.len()
-            ));
+        let (needed, there) = (names.len(), fields.len());
+        if there != needed {
+            return Err(format!("a row needs {needed} fields, this one has {there}"));
         }
         let mut stamp = None;
         let mut values = Vec::with_capacity(fields.len());

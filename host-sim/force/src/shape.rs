@@ -4,7 +4,7 @@
 //! blunt edge does not lengthen it.
 
 use super::deconvolution::product;
-use super::law::Law;
+use super::law::{Law, highest};
 use super::resolution::Resolution;
 use super::simplex::least;
 
@@ -28,9 +28,7 @@ pub struct Fit {
 
 /// Fits a pulse to `force` (N), sampled at `rate` (Hz).
 pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
-    let top = (0..force.len())
-        .max_by(|a, b| force[*a].total_cmp(&force[*b]))
-        .unwrap_or(0);
+    let top = highest(force);
     let low = |k: &usize| force[*k] < 0.5 * force[top];
     let before = (0..top).rev().find(low).unwrap_or(0);
     let after = (top..force.len()).find(low).unwrap_or(force.len());
@@ -76,10 +74,8 @@ fn matched(trial: &Trial, force: &[f64], rate: f64, resolution: &Resolution) -> 
         .collect();
     let through = |k: usize| -> f64 {
         let now = k as f64 / rate;
-        let answers = points.iter();
-        answers
-            .map(|(time, force)| force * resolution.answer(now - time))
-            .sum()
+        let answer = |(time, force): &(f64, f64)| force * resolution.answer(now - time);
+        points.iter().map(answer).sum()
     };
     let shape: Vec<f64> = (0..force.len()).map(through).collect();
     let peak = product(&shape, force) / product(&shape, &shape).max(f64::MIN_POSITIVE);

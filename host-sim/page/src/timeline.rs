@@ -3,7 +3,7 @@
 use touchdown_core::event::EventKind;
 
 use crate::report::monitor::unsound;
-use touchdown_base::history::{History, Phase, PhaseKind};
+use touchdown_base::history::{History, Phase, PhaseKind, Pulse};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
 use touchdown_run::matching::{Match, Matches, match_events, regime_event};
@@ -40,13 +40,10 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
 
 fn heading(scene: &Scene, paint: Paint) -> String {
     let heading = shown(scene.heading());
-    let mut words = heading.split_whitespace().peekable();
-    let mut lines = vec![words.next().unwrap_or_default().to_owned()];
-    for word in words {
-        let last = lines
-            .last_mut()
-            .filter(|line| line.len() + 1 + word.len() <= 79);
-        match last {
+    let mut lines: Vec<String> = Vec::new();
+    for word in heading.split_whitespace() {
+        let fits = |line: &&mut String| line.len() + 1 + word.len() <= 79;
+        match lines.last_mut().filter(fits) {
             Some(line) => *line += &format!(" {word}"),
             None => lines.push(word.to_owned()),
         }
@@ -65,11 +62,8 @@ fn heading(scene: &Scene, paint: Paint) -> String {
 }
 
 fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let head = format!(
-        "\n{:<12}{:>12}{:>12}  {:<10}{:>13}{:>12}",
-        "phase", "from ms", "to ms", "detected", "onset ms", "latency ms"
-    );
-    let mut text = paint.bold(&head) + "\n";
+    let head = "\nphase            from ms       to ms  detected       onset ms  latency ms";
+    let mut text = paint.bold(head) + "\n";
     let phases = &outcome.truth.whole.phases;
     for phase in phases.iter().take(LISTED) {
         text += &format!(
@@ -78,12 +72,8 @@ fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
             millis(phase.start_s),
             millis(phase.end_s)
         );
-        let begun = event_of(phase).and_then(|kind| {
-            matches
-                .of_kind(kind)
-                .find(|event| (event.onset_s - phase.start_s).abs() <= SAME)
-        });
-        if let Some(event) = begun {
+        let begins = |event: &&Match| (event.onset_s - phase.start_s).abs() <= SAME;
+        if let Some(event) = event_of(phase).and_then(|it| matches.of_kind(it).find(begins)) {
             text += &verdict(event, &outcome.detection, paint);
         }
         text.push('\n');
@@ -110,20 +100,16 @@ fn verdict(event: &Match, detection: &Detection, paint: Paint) -> String {
     let detected = &detection.events[index];
     format!(
         "  {}{:>13}{:>12}",
-        paint.good(&format!("{:<10}", fate(detected))),
+        paint.good(&format!("{:<10}", fate(detected).unwrap_or("declared"))),
         millis(detected.onset_s),
         optional(event.latency_s.map(millis)),
     )
 }
 
-fn fate(event: &DetectedEvent) -> &'static str {
-    if event.confirmed_s.is_some() {
-        "confirmed"
-    } else if event.withdrawn_s.is_some() {
-        "withdrawn"
-    } else {
-        "declared"
-    }
+/// What became of it after it was declared.
+fn fate(event: &DetectedEvent) -> Option<&'static str> {
+    let confirmed = event.confirmed_s.map(|_| "confirmed");
+    confirmed.or(event.withdrawn_s.map(|_| "withdrawn"))
 }
 
 fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
@@ -131,16 +117,9 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     if truth.is_empty() {
         return String::new();
     }
-    let head = format!(
-        "\n{:<8}{:>12}{:>10}{:>13}{:>15}{:>10}{:>12}",
-        "impact",
-        "at ms",
-        "mm/s",
-        ["accurate to", "model off by"][usize::from(outcome.by_reference)],
-        "onset error ms",
-        "seen mm/s",
-        "latency ms"
-    );
+    let off = ["accurate to", "model off by"][usize::from(outcome.by_reference)];
+    let head =
+        format!("\nimpact         at ms      mm/s{off:>13} onset error ms seen mm/s  latency ms");
     let mut text = paint.bold(&head) + "\n";
     let found = matches.of_kind(EventKind::Impact);
     for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
@@ -175,10 +154,8 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
 
 /// The contact forces of the model's impacts, where it has any.
 fn forces(model: &History) -> String {
-    let Some(hardest) = model
-        .pulses()
-        .max_by(|a, b| a.peak_force.total_cmp(&b.peak_force))
-    else {
+    let by_force = |a: &Pulse, b: &Pulse| a.peak_force.total_cmp(&b.peak_force);
+    let Some(hardest) = model.pulses().max_by(by_force) else {
         return String::new();
     };
     let longest = model.pulses().map(|it| it.duration).fold(0.0, f64::max);
@@ -196,12 +173,10 @@ fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let Some(kind) = regime_event(truth) else {
         return text + "\n";
     };
-    let found = matches
-        .of_kind(kind)
-        .find_map(|event| event.detected)
-        .map(|index| &outcome.detection.events[index]);
-    text += &match found {
-        Some(event) => paint.good(&format!("; declared at {} ms", millis(event.declared_s))),
+    let found = matches.of_kind(kind).find_map(|event| event.detected);
+    let declared = found.map(|index| outcome.detection.events[index].declared_s);
+    text += &match declared {
+        Some(time) => paint.good(&format!("; declared at {} ms", millis(time))),
         None => paint.bad("; not declared"),
     };
     text + "\n"
@@ -213,11 +188,8 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let head = format!(
-        "\n{:<12}{:>12}{:>12}{:>15}",
-        "predicted", "forward", "backward", "whirls from ms"
-    );
-    let mut text = paint.bold(&head) + "\n";
+    let head = "\npredicted        forward    backward whirls from ms";
+    let mut text = paint.bold(head) + "\n";
     for forecast in all.iter().take(LISTED) {
         text += &format!(
             "{:<12}{:>12.2}{:>12.2}{:>15}\n",
@@ -293,24 +265,22 @@ pub fn accuracy(outcome: &Outcome) -> Vec<String> {
 }
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let mut text = String::new();
-    for line in left_out(outcome) {
-        text += &(paint.bad(&line) + "\n");
-    }
+    let mut lines: Vec<String> = left_out(outcome).collect();
     let regime = outcome.model.histories.whole.regime;
     if regime != outcome.truth.whole.regime {
-        let line = format!("the model ends as {}", regime_name(regime));
-        text += &(paint.bad(&line) + "\n");
+        lines.push(format!("the model ends as {}", regime_name(regime)));
     }
     if !matches.false_events.is_empty() {
-        let line = format!("{} events that did not happen", matches.false_events.len());
-        text += &(paint.bad(&line) + "\n");
+        let count = matches.false_events.len();
+        lines.push(format!("{count} events that did not happen"));
     }
+    let mut text: String = lines.iter().map(|it| paint.bad(it) + "\n").collect();
     let told = outcome.detection.events.iter().filter_map(|event| {
-        let fault = event.fault?;
-        let (channel, kind) = (fault.channel, fault.kind);
-        let at = millis(event.declared_s);
-        Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
+        let (fault, at) = (event.fault?, millis(event.declared_s));
+        Some(format!(
+            "sensor {}: {}, told at {at} ms\n",
+            fault.channel, fault.kind
+        ))
     });
     let told: Vec<_> = told.collect();
     text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
@@ -337,26 +307,20 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
         samples_line(detection)
     );
     if !detection.events.is_empty() {
-        text += &format!(
-            "\n{:<15}{:>16}{:>16}{:>12}{:>7}{:>12}\n",
-            "event", "onset s", "declared s", "", "plane", "speed mm/s"
-        );
+        text +=
+            "\nevent                   onset s      declared s              plane  speed mm/s\n";
     }
     for event in detection.events.iter().take(REPLAYED) {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
         let fault = event
             .fault
-            .map(|fault| format!("  {} {}", fault.channel, fault.kind));
+            .map(|it| format!("  {} {}", it.channel, it.kind));
         let line = format!(
             "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             <&str>::from(event.event),
             event.onset_s,
             event.declared_s,
-            if fate(event) == "declared" {
-                ""
-            } else {
-                fate(event)
-            },
+            fate(event).unwrap_or_default(),
             event.plane,
             speed.unwrap_or_default(),
             fault.unwrap_or_default(),
