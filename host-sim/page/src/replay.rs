@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::report::spectrum::{Spectra, spectra};
+use crate::report::spectrum::spectra;
 use crate::report::timeline::onsets;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
@@ -113,12 +113,7 @@ fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
         ],
         None => vec![("motion", "all of it", [begin, end])],
     };
-    spectra(&Spectra {
-        found: &replay.spectrogram,
-        spin: scene.rotor.spin,
-        parts,
-        time: "time, s",
-    })
+    spectra(&replay.spectrogram, scene.rotor.spin, &parts, "time, s")
 }
 
 fn events(replay: &Replay) -> Markup {

@@ -4,7 +4,7 @@ use super::window::{far, runs};
 use maud::{Markup, html};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
-use touchdown_base::history::PhaseKind;
+use touchdown_base::history::{Impact, PhaseKind};
 use touchdown_chart::plot::{Axis, coordinate};
 use touchdown_chart::text::significant;
 use touchdown_run::outcome::{Outcome, TracePoint};
@@ -15,44 +15,30 @@ const RADIUS: f64 = 180.0;
 /// Of the clearance: half the width of the drawn circle.
 const AT_WALL: f64 = 0.02;
 
-/// A path in a gap.
-pub struct Orbit<'a> {
-    /// Its heading.
-    pub title: &'a str,
-    /// Of the gap, m.
-    pub clearance: f64,
-    /// rad/s.
-    pub spin: f64,
-    /// In the gap.
-    pub trace: &'a [TracePoint],
-    /// Where impacts were, m.
-    pub hits: Vec<[f64; 2]>,
-}
-
 /// Draws the rotor's whole run; clearance in m, spin in rad/s.
 pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
     // A rotor that tilts hits with its ends.
     let own = outcome.truth.rings.is_empty();
-    let impacts = outcome.truth.whole.impacts.iter().filter(|_| own);
-    draw(&Orbit {
-        title: "Orbit",
-        clearance,
-        spin,
-        trace: &outcome.trace,
-        hits: impacts.map(|impact| impact.state.position).collect(),
-    })
+    let impacts = &outcome.truth.whole.impacts[..];
+    let hits = if own { impacts } else { &[] };
+    draw("Orbit", clearance, spin, &outcome.trace, hits)
 }
 
-/// Draws a path with equal axes.
-pub fn draw(orbit: &Orbit) -> Markup {
-    let (clearance, spin) = (orbit.clearance, orbit.spin);
+/// Draws a path with equal axes in a gap, m, and where impacts were; spin in rad/s.
+pub fn draw(
+    title: &str,
+    clearance: f64,
+    spin: f64,
+    trace: &[TracePoint],
+    impacts: &[Impact],
+) -> Markup {
     let scale = RADIUS / clearance;
     let micro = 1.25 * clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
         svg.orbit role="img" viewBox="-252 -226 488 472" {
-            title { (orbit.title) }
+            title { (title) }
             desc {
                 "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
                 "circle; rings mark impacts, the outer arrow the direction of spin."
@@ -65,10 +51,10 @@ pub fn draw(orbit: &Orbit) -> Markup {
             }
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
-            @for run in runs(orbit.trace) {
+            @for run in runs(trace) {
                 path class={ "curve " (<&str>::from(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
-            @for (x, y) in hits(&orbit.hits, scale) {
+            @for (x, y) in hits(impacts, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
             }
             (spin_arrow(spin))
@@ -136,9 +122,9 @@ fn turn(from: &TracePoint, to: &TracePoint) -> f64 {
 }
 
 /// In drawing units, those that fall on others left out.
-fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
+fn hits(impacts: &[Impact], scale: f64) -> Vec<(f64, f64)> {
     let mut drawn: Vec<(f64, f64)> = Vec::new();
-    for at in places.iter().map(|it| place(*it, scale)) {
+    for at in impacts.iter().map(|it| place(it.state.position, scale)) {
         let apart = |it: &(f64, f64)| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5;
         if drawn.iter().all(apart) {
             drawn.push(at);

@@ -18,6 +18,9 @@ const LANES: usize = 5;
 /// Width of the smallest plot area that labels must fit into, px.
 const NARROW: f64 = 330.0;
 
+/// Part of the width from which labels stand left of their lines.
+const TURNS: f64 = 0.6;
+
 /// Advance of a label's letter, px.
 const LETTER: f64 = 6.4;
 
@@ -139,21 +142,17 @@ fn detected_phases(detection: &Detection, end: f64, time: fn(&DetectedEvent) -> 
         changes.extend(event.withdrawn_s.map(|at| (at, PhaseKind::Levitated)));
     }
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut phases: Vec<Phase> = Vec::new();
-    for (start_s, phase) in changes {
-        if let Some(last) = phases.last_mut() {
-            if last.phase == phase {
-                continue;
-            }
-            last.end_s = start_s;
-        }
-        phases.push(Phase {
+    changes.dedup_by_key(|it| it.1);
+    let ends = changes.iter().skip(1).map(|it| Some(it.0)).chain([None]);
+    let phases = changes
+        .iter()
+        .zip(ends)
+        .map(|(&(start_s, phase), next)| Phase {
             phase,
             start_s,
-            end_s: end.max(start_s),
+            end_s: next.unwrap_or(end.max(start_s)),
         });
-    }
-    phases
+    phases.collect()
 }
 
 /// A declared event, drawn below the bars.
@@ -174,10 +173,9 @@ impl Label {
     }
 
     fn text(&self, bars: f64) -> Markup {
-        let (anchor, dx) = if self.at > 0.6 {
-            ("end", "-5")
-        } else {
-            ("start", "5")
+        let (anchor, dx) = match self.at > TURNS {
+            true => ("end", "-5"),
+            false => ("start", "5"),
         };
         html! {
             text.label x=(percent(self.at)) y=(self.foot(bars)) dx=(dx) text-anchor=(anchor) { (self.text) }
@@ -187,10 +185,9 @@ impl Label {
     /// Left and right end as fractions of the narrowest chart.
     fn extent(&self) -> (f64, f64) {
         let width = (self.text.chars().count() as f64 * LETTER + 10.0) / NARROW;
-        if self.at > 0.6 {
-            (self.at - width, self.at)
-        } else {
-            (self.at, self.at + width)
+        match self.at > TURNS {
+            true => (self.at - width, self.at),
+            false => (self.at, self.at + width),
         }
     }
 }
@@ -199,10 +196,7 @@ impl Label {
 /// no lane is left to the table.
 fn labels(events: &[DetectedEvent], x: &Axis) -> (Vec<Label>, usize) {
     let mut labels: Vec<Label> = Vec::new();
-    for event in events
-        .iter()
-        .filter(|event| event.event != EventKind::Impact)
-    {
+    for event in events.iter().filter(|it| it.event != EventKind::Impact) {
         let name = <&str>::from(event.event);
         let fates = [
             (Some(event.declared_s), name.to_owned()),
@@ -219,15 +213,8 @@ fn labels(events: &[DetectedEvent], x: &Axis) -> (Vec<Label>, usize) {
                 text,
             };
             let (from, to) = label.extent();
-            let free = |lane: &usize| {
-                labels
-                    .iter()
-                    .filter(|other| other.lane == *lane)
-                    .all(|other| {
-                        let (start, end) = other.extent();
-                        to < start || from > end
-                    })
-            };
+            let apart = |it: &Label| to < it.extent().0 || from > it.extent().1;
+            let free = |lane: &usize| labels.iter().all(|it| it.lane != *lane || apart(it));
             if let Some(lane) = (0..LANES).find(free) {
                 label.lane = lane;
                 labels.push(label);
