@@ -89,9 +89,9 @@ impl Axis {
         (0.0..=1.0).contains(&self.fraction(value))
     }
 
-    /// The greatest value that it shows, of either sign.
-    pub fn reach(&self) -> f64 {
-        self.hi.abs().max(self.lo.abs()) / self.scale
+    /// The least and the greatest value that it shows, if it is linear.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.lo, self.hi].map(|end| end / self.scale)
     }
 
     /// Ticks: numbers in its unit, powers of ten where it is logarithmic, and their texts.
@@ -142,29 +142,14 @@ pub struct Pen<'a> {
 impl Pen<'_> {
     fn place(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let axes = self.chart;
-        self.on_paper(axes.x.fraction(x), axes.y.fraction(y))
-    }
-
-    /// From fractions of both axes.
-    fn on_paper(&self, x: f64, y: f64) -> Option<(f64, f64)> {
-        let y = 1.0 - y;
+        let (x, y) = (axes.x.fraction(x), 1.0 - axes.y.fraction(y));
         let near = x.abs() < 3.0 && y.abs() < 3.0;
-        near.then_some((x * WIDTH, y * self.chart.height))
+        near.then_some((x * WIDTH, y * axes.height))
     }
 
     /// Goes on to a point; where it is not finite or far outside, the curve breaks.
     pub fn line_to(&mut self, x: f64, y: f64) {
-        self.go_to(self.place(x, y));
-    }
-
-    /// The same, no higher or lower than the chart.
-    pub fn line_within(&mut self, x: f64, y: f64) {
-        let y = self.chart.y.fraction(y).clamp(0.0, 1.0);
-        self.go_to(self.on_paper(self.chart.x.fraction(x), y));
-    }
-
-    fn go_to(&mut self, to: Option<(f64, f64)>) {
-        let Some(to) = to else {
+        let Some(to) = self.place(x, y) else {
             return self.lift();
         };
         match self.last {
@@ -247,8 +232,8 @@ impl Chart<'_> {
         let mut pen = self.pen();
         for side in [-1.0, 1.0] {
             pen.lift();
-            for end in [0.0, 1.0] {
-                pen.go_to(pen.on_paper(end, self.y.fraction(side * at)));
+            for end in self.x.ends() {
+                pen.line_to(end, side * at);
             }
         }
         pen.finish("wall")

@@ -136,9 +136,9 @@ fn prepare(hit: &Hit, rate: f64) -> Result<Clean, String> {
     let moved: Vec<f64> = from_zero(&hit.acceleration, motion.mean);
     let peak = greatest(&pushed, 0.0);
     if peak <= CLEAR * force.noise {
+        let noise = force.noise;
         return Err(format!(
-            "the hit has no force: its greatest, {peak:.3e} N, is not {CLEAR} times its noise, {:.3e} N",
-            force.noise
+            "the hit has no force: its greatest, {peak:.3e} N, is not {CLEAR} times its noise, {noise:.3e} N"
         ));
     }
     if greatest(&moved, 0.0) <= CLEAR * motion.noise {
@@ -148,15 +148,15 @@ fn prepare(hit: &Hit, rate: f64) -> Result<Clean, String> {
     let skirt = (SKIRT * rate).ceil() as usize;
     let quiet = |it: &f64| it.abs() < OVER * peak;
     let begin = pushed[..top].iter().rposition(quiet).unwrap_or(0);
-    let end = (top..pushed.len()).find(|k| quiet(&pushed[*k]));
-    let end = end.unwrap_or(pushed.len());
+    let end = pushed[top..].iter().position(quiet);
+    let end = end.map_or(pushed.len(), |it| top + it);
     let window = begin.saturating_sub(skirt)..(end + skirt).min(pushed.len());
     let outside = (pushed.iter_mut().enumerate()).filter(|(k, _)| !window.contains(k));
     for (k, value) in outside {
         if value.abs() >= SECOND * peak {
+            let apart = 1e3 * k.abs_diff(top) as f64 / rate;
             return Err(format!(
-                "the hammer hits twice: {value:.3e} N, {:.3} ms from the peak",
-                1e3 * k.abs_diff(top) as f64 / rate
+                "the hammer hits twice: {value:.3e} N, {apart:.3} ms from the peak"
             ));
         }
         *value = 0.0;

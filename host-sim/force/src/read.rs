@@ -15,23 +15,17 @@ const SAME_RATE: f64 = 1e-4;
 /// Of a file, bytes: 13 s at the highest rate. All of it is held in memory.
 const LARGEST: u64 = 256 << 20;
 
-const RECORDING: &str = "time_s,ax_m_s2[,ay_m_s2]";
-const CALIBRATION: &str = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
-
 /// Reads a recording, header `time_s,ax_m_s2[,ay_m_s2]`.
 pub fn recording(path: &Path) -> Result<Recording, InputError> {
-    let table = Table::read(path, RECORDING, |names| {
-        matches!(
-            names,
-            ["time_s", "ax_m_s2"] | ["time_s", "ax_m_s2", "ay_m_s2"]
-        )
+    let table = Table::read(path, "time_s,ax_m_s2[,ay_m_s2]", |names| {
+        names.strip_suffix(&["ay_m_s2"]).unwrap_or(names) == ["time_s", "ax_m_s2"]
     })?;
     let rows = &table.rows;
-    let clock = table.clock(rows)?;
+    let (start, rate) = table.clock(rows)?;
     let axes = 1..table.names.len();
     Ok(Recording {
-        rate: table.rate(&clock)?,
-        start: clock.first,
+        rate,
+        start,
         acceleration: axes.map(|column| columns(rows, column)).collect(),
         file: table.file,
     })
@@ -40,7 +34,8 @@ pub fn recording(path: &Path) -> Result<Recording, InputError> {
 /// Reads known hits, header `[hit,]time_s,force_n,ax_m_s2`, or `ay_m_s2` for the other axis. A new
 /// value of `hit` begins the next one, with a time of its own.
 pub fn calibration(path: &Path) -> Result<Hits, InputError> {
-    let table = Table::read(path, CALIBRATION, |names| {
+    let header = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
+    let table = Table::read(path, header, |names| {
         let names = names.strip_prefix(&["hit"]).unwrap_or(names);
         matches!(names, ["time_s", "force_n", "ax_m_s2" | "ay_m_s2"])
     })?;
@@ -54,13 +49,12 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
     let mut rate: Option<f64> = None;
     let mut hits = Vec::new();
     for rows in table.rows.chunk_by(same) {
-        let own = table.rate(&table.clock(rows)?)?;
+        let (_, own) = table.clock(rows)?;
         let common = *rate.get_or_insert(own);
         if (own / common - 1.0).abs() > SAME_RATE {
+            let [own, common] = [own, common].map(Number);
             let rule = format!(
-                "the sample rate is {} Hz, that of the first hit {} Hz: all hits need one rate",
-                Number(own),
-                Number(common)
+                "the sample rate is {own} Hz, that of the first hit {common} Hz: all hits need one rate"
             );
             return Err(InputError::at_line(&table.file, rows[0].line, rule));
         }
@@ -83,12 +77,9 @@ pub fn same_rate(recording: &Recording, hits: &Hits) -> Result<(), InputError> {
     if (recording.rate / hits.rate - 1.0).abs() <= SAME_RATE {
         return Ok(());
     }
-    let rule = format!(
-        "the sample rate is {} Hz, that of {} {} Hz: both need one rate",
-        Number(recording.rate),
-        hits.file,
-        Number(hits.rate)
-    );
+    let ([own, other], file) = ([recording.rate, hits.rate].map(Number), &hits.file);
+    let rule =
+        format!("the sample rate is {own} Hz, that of {file} {other} Hz: both need one rate");
     Err(InputError::at_line(&recording.file, 3, rule))
 }
 
@@ -140,8 +131,8 @@ impl Table {
         Ok(Self { file, names, rows })
     }
 
-    /// Follows the time of `rows`, of which there is one at least.
-    fn clock(&self, rows: &[Row]) -> Result<Clock, InputError> {
+    /// Time of the first of `rows`, of which there is one at least, s, and their rate, Hz.
+    fn clock(&self, rows: &[Row]) -> Result<(f64, f64), InputError> {
         let mut clock = Clock::new(rows[0].stamp);
         rows.iter().for_each(|row| clock.learn(row.stamp));
         for row in &rows[1..] {
@@ -152,20 +143,12 @@ impl Table {
             let rule = "one row alone has no sample rate";
             return Err(InputError::at_line(&self.file, rows[0].line, rule));
         }
-        Ok(clock)
-    }
-
-    fn rate(&self, clock: &Clock) -> Result<f64, InputError> {
         let rate = clock.rate().unwrap_or_default();
         if RATES.contains(&rate) {
-            return Ok(rate);
+            return Ok((clock.first, rate));
         }
-        let rule = format!(
-            "the sample rate must be {} to {} Hz, is {} Hz",
-            RATES.start(),
-            RATES.end(),
-            Number(rate)
-        );
+        let (least, most, rate) = (RATES.start(), RATES.end(), Number(rate));
+        let rule = format!("the sample rate must be {least} to {most} Hz, is {rate} Hz");
         Err(InputError::at_line(&self.file, 3, rule))
     }
 }

@@ -52,9 +52,7 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
         duration: trial.width * trial.law.duration,
         peak,
         misfit: (rest / force.len() as f64).sqrt() / peak.abs(),
-        curve: (trial.law.points())
-            .map(|(time, force)| (trial.peak_time + trial.width * time, peak * force))
-            .collect(),
+        curve: trial.points(peak),
     }
 }
 
@@ -66,12 +64,19 @@ struct Trial {
     width: f64,
 }
 
+impl Trial {
+    /// Pairs of s and force, which is at most `peak`.
+    fn points(&self, peak: f64) -> Vec<(f64, f64)> {
+        let points = self.law.points();
+        let place = |(time, force)| (self.peak_time + self.width * time, peak * force);
+        points.map(place).collect()
+    }
+}
+
 /// The peak (N) with which the trial is nearest to the force, and the sum of squares that it leaves.
 fn matched(trial: &Trial, force: &[f64], rate: f64, resolution: &Resolution) -> (f64, f64) {
     let part = trial.width * trial.law.duration / trial.law.force.len() as f64;
-    let points: Vec<(f64, f64)> = (trial.law.points())
-        .map(|(time, force)| (trial.peak_time + trial.width * time, part * force))
-        .collect();
+    let points = trial.points(part);
     let through = |k: usize| -> f64 {
         let now = k as f64 / rate;
         let answer = |(time, force): &(f64, f64)| force * resolution.answer(now - time);

@@ -22,12 +22,8 @@ pub fn least(start: [f64; 4], spread: [f64; 4], cost: impl Fn([f64; 4]) -> f64) 
         };
         let mirrored = move_by(-1.0);
         corners[4] = if mirrored.0 < corners[0].0 {
-            let farther = move_by(-2.0);
-            if farther.0 < mirrored.0 {
-                farther
-            } else {
-                mirrored
-            }
+            let farther = Some(move_by(-2.0));
+            farther.filter(|it| it.0 < mirrored.0).unwrap_or(mirrored)
         } else if mirrored.0 < corners[3].0 {
             mirrored
         } else {

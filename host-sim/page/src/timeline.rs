@@ -27,7 +27,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
-    text.extend(accuracy(outcome).into_iter().map(|line| line + "\n"));
+    text.extend(accuracy(outcome).map(|line| line + "\n"));
     text += &forecasts(&outcome.detection, paint);
     text += &severity(&outcome.detection);
     text += &outcome.conduct.told(Timebase::of(scene)).text(paint);
@@ -78,7 +78,7 @@ fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         }
         text.push('\n');
     }
-    text + &more(phases.len(), "phases")
+    text + &more(phases.len(), LISTED, "phases")
 }
 
 /// The event that a phase begins with.
@@ -149,7 +149,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         };
         text.push('\n');
     }
-    text + &more(truth.len(), "impacts") + &forces(&outcome.model.histories.whole)
+    text + &more(truth.len(), LISTED, "impacts") + &forces(&outcome.model.histories.whole)
 }
 
 /// The contact forces of the model's impacts, where it has any.
@@ -199,7 +199,7 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
             optional(forecast.begins_s.map(millis)),
         );
     }
-    text + &more(all.len(), "forecasts")
+    text + &more(all.len(), LISTED, "forecasts")
 }
 
 fn severity(detection: &Detection) -> String {
@@ -214,10 +214,8 @@ fn severity(detection: &Detection) -> String {
         it.velocity_index,
     );
     if it.whirl_load_n > 0.0 {
-        text += &format!(
-            "whirl up to {:.0} Hz, {:.0} N\n",
-            it.whirl_frequency_hz, it.whirl_load_n
-        );
+        let (frequency, load) = (it.whirl_frequency_hz, it.whirl_load_n);
+        text += &format!("whirl up to {frequency:.0} Hz, {load:.0} N\n");
     }
     text
 }
@@ -239,29 +237,21 @@ pub fn left_out(outcome: &Outcome) -> impl Iterator<Item = String> {
 }
 
 /// How far to trust the model's numbers.
-pub fn accuracy(outcome: &Outcome) -> Vec<String> {
-    let Some(accuracy) = &outcome.accuracy else {
-        return Vec::new();
-    };
-    let mut lines = Vec::new();
-    if let Some(worst) = accuracy.worst() {
-        let (time, speed) = (worst.time_s, worst.normal_speed_m_s * 1e3);
-        lines.push(format!(
-            "accuracy: times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s"
-        ));
-    }
-    if let Some(index) = accuracy.uncertain_from {
-        lines.push(format!(
-            "accuracy: from impact {index} on not certain: read statistics"
-        ));
-    } else {
-        let place = accuracy.end.position_m * 1e3;
-        lines.push(format!("accuracy: place at the end to {place:.0e} mm"));
-    }
-    if !accuracy.regime_is_certain {
-        lines.push("accuracy: the regime is not certain".to_owned());
-    }
-    lines
+pub fn accuracy(outcome: &Outcome) -> impl Iterator<Item = String> {
+    let lines = outcome.accuracy.iter().flat_map(|it| {
+        let worst = it.worst().map(|it| {
+            let (time, speed) = (it.time_s, it.normal_speed_m_s * 1e3);
+            format!("times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s")
+        });
+        let end = match it.uncertain_from {
+            Some(index) => format!("from impact {index} on not certain: read statistics"),
+            None => format!("place at the end to {:.0e} mm", it.end.position_m * 1e3),
+        };
+        let uncertain = !it.regime_is_certain;
+        let regime = uncertain.then(|| "the regime is not certain".to_owned());
+        [worst, Some(end), regime].into_iter().flatten()
+    });
+    lines.map(|line| format!("accuracy: {line}"))
 }
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
@@ -277,14 +267,12 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let mut text: String = lines.iter().map(|it| paint.bad(it) + "\n").collect();
     let told = outcome.detection.events.iter().filter_map(|event| {
         let (fault, at) = (event.fault?, millis(event.declared_s));
-        Some(format!(
-            "sensor {}: {}, told at {at} ms\n",
-            fault.channel, fault.kind
-        ))
+        let sensor = format!("sensor {}: {}", fault.channel, fault.kind);
+        Some(format!("{sensor}, told at {at} ms\n"))
     });
     let told: Vec<_> = told.collect();
     text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
-    text += &more(told.len(), "sensor faults");
+    text += &more(told.len(), LISTED, "sensor faults");
     text + &samples_line(&outcome.detection)
 }
 
@@ -312,9 +300,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
     }
     for event in detection.events.iter().take(REPLAYED) {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
-        let fault = event
-            .fault
-            .map(|it| format!("  {} {}", it.channel, it.kind));
+        let fault = (event.fault).map(|it| format!("  {} {}", it.channel, it.kind));
         let line = format!(
             "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             <&str>::from(event.event),
@@ -327,10 +313,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
         );
         text += &format!("{}\n", line.trim_end());
     }
-    let more = detection.events.len().saturating_sub(REPLAYED);
-    if more > 0 {
-        text += &format!("... {more} more events, with --json\n");
-    }
+    text += &more(detection.events.len(), REPLAYED, "events, with --json");
     if detection.left_out > 0 {
         let left_out = detection.left_out;
         text += &format!("{left_out} further messages of the detector were counted, not kept\n");
@@ -338,11 +321,10 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
     text
 }
 
-fn more(count: usize, what: &str) -> String {
-    if count > LISTED {
-        format!("... {} more {what}\n", count - LISTED)
-    } else {
-        String::new()
+fn more(count: usize, listed: usize, what: &str) -> String {
+    match count.saturating_sub(listed) {
+        0 => String::new(),
+        more => format!("... {more} more {what}\n"),
     }
 }
 
@@ -356,10 +338,9 @@ fn short(value: f64) -> f64 {
 }
 
 fn seconds(difference: f64) -> String {
-    if difference == 0.0 {
-        "0 s".to_owned()
-    } else {
-        format!("{:.0e} s", difference.abs())
+    match difference.abs() {
+        0.0 => "0 s".to_owned(),
+        apart => format!("{apart:.0e} s"),
     }
 }
 

@@ -99,7 +99,8 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
     let same = ["differs", "same"][usize::from(model.regime == truth.regime)];
     let [ours, theirs] = both.map(|it| regime_name(it.regime));
     rows.push(["Regime", ours, theirs, same].map(str::to_owned));
-    let apart = error(apart(model, truth) / scene.retainer.clearance);
+    let ([x, y], [u, v]) = (model.end.position, truth.end.position);
+    let apart = error(f64::hypot(x - u, y - v) / scene.retainer.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
     table("Model against reference", &rows)
         .words("Quantity", |it| it[0].clone())
@@ -113,11 +114,6 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
 pub fn peak(history: &History) -> Option<f64> {
     let speeds = history.impacts.iter().map(|impact| impact.normal_speed);
     speeds.reduce(f64::max)
-}
-
-fn apart(model: &History, truth: &History) -> f64 {
-    let ([x, y], [u, v]) = (model.end.position, truth.end.position);
-    f64::hypot(x - u, y - v)
 }
 
 fn count_row(name: &str, [model, truth]: [usize; 2]) -> Row {

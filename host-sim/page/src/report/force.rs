@@ -34,23 +34,19 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
                 (impulses(window, &truth.impacts))
                 @match press.and_then(|press| meeting(first, restitution, press)) {
                     Some(meeting) => { (pulse(first, &meeting)) },
-                    None => { (no_force(first, press.is_some())) },
+                    None => {
+                        p.note {
+                            "The first impact: " (si(first.normal_impulse, "N s")) " at " (ms(first.state.time)) "\u{a0}ms. "
+                            @if press.is_some() {
+                                "No force over time is drawn: this impact has no rebound to find its damping from."
+                            } @else {
+                                "No force over time: a rigid contact has none, and the scene has no table [materials] to find it from."
+                            }
+                        }
+                    },
                 }
             } @else {
                 p { "No impact." }
-            }
-        }
-    }
-}
-
-fn no_force(first: &Impact, materials: bool) -> Markup {
-    html! {
-        p.note {
-            "The first impact: " (si(first.normal_impulse, "N s")) " at " (ms(first.state.time)) "\u{a0}ms. "
-            @if materials {
-                "No force over time is drawn: this impact has no rebound to find its damping from."
-            } @else {
-                "No force over time: a rigid contact has none, and the scene has no table [materials] to find it from."
             }
         }
     }

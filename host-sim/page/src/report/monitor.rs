@@ -1,7 +1,8 @@
 //! What the monitor made of the drop: forecasts of whirl, severity, its sensors, the controller's outputs.
 
+use super::verdict::whirls;
 use maud::{Markup, html};
-use touchdown_base::history::{History, Phase, PhaseKind, Regime};
+use touchdown_base::history::{History, Phase, PhaseKind};
 use touchdown_chart::table::table;
 use touchdown_chart::text::{ms, or_dash, si, significant};
 use touchdown_core::event::Level;
@@ -42,8 +43,7 @@ pub fn forecasts(outcome: &Outcome) -> Markup {
         return html! { p { "None: no impact or contact was declared, or too little was known of the speed." } };
     }
     let truth = &outcome.truth.whole;
-    let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
-    let begun = truth.contact_starts.last().filter(|_| whirls);
+    let begun = truth.contact_starts.last().filter(|_| whirls(truth));
     let part = |probability| significant(probability, 2);
     let table = table("Forecast of whirl", all)
         .number("Ready\nms", |it| ms(it.made_s))

@@ -13,7 +13,8 @@ const POINTS: u32 = 240;
 /// or -1 where friction drives clockwise.
 pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
     let (whirl, swing) = (plane.slowest_whirl(), plane.widest_swing());
-    let fastest = chart.y.reach();
+    let [lowest, highest] = chart.y.ends();
+    let fastest = highest.abs().max(lowest.abs());
     let least = |phi: f64| match whirl.holds(phi) {
         true => whirl.rate(phi),
         false => plane.limit(phi),
@@ -23,7 +24,10 @@ pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
     let between = |ends, low: &dyn Fn(f64) -> f64, high: &dyn Fn(f64) -> f64, class| {
         let mut pen = chart.pen();
         for (phi, rate) in outline(ends, low, high) {
-            pen.line_within(side * phi.to_degrees(), side * rate);
+            pen.line_to(
+                side * phi.to_degrees(),
+                (side * rate).clamp(lowest, highest),
+            );
         }
         pen.fill(class)
     };
