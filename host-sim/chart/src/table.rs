@@ -12,8 +12,10 @@ const MOST: usize = 500;
 pub struct Table<'a, R> {
     name: &'a str,
     rows: &'a [R],
-    columns: Vec<(Markup, Box<dyn Fn(&R) -> Markup + 'a>)>,
+    columns: Vec<(Markup, DrawCell<'a, R>)>,
 }
+
+type DrawCell<'a, R> = Box<dyn Fn(&R) -> Markup + 'a>;
 
 /// A table of these rows, still without a column. The name is for screen readers.
 pub fn table<'a, R>(name: &'a str, rows: &'a [R]) -> Table<'a, R> {

@@ -16,8 +16,11 @@ const IMPACTS: usize = 10;
 /// Quantity, model, reference, difference.
 type Row = [String; 4];
 
-/// What may begin several times, and when it did, s.
-const STARTS: [(&str, fn(&History) -> &[f64]); 3] = [
+/// Times of one kind, s.
+type Times = fn(&History) -> &[f64];
+
+/// What may begin several times.
+const STARTS: [(&str, Times); 3] = [
     ("Permanent contact", |it| &it.contact_starts),
     ("Rolling", |it| &it.rolling_starts),
     ("Lift-off", |it| &it.lift_offs),
@@ -134,12 +137,11 @@ pub fn energy(ledger: &Ledger) -> Markup {
     let stored = ledger.stored.iter().map(|it| ("in", it));
     let gone = ledger.gone.iter().map(|it| ("gone:", it));
     let rows: Vec<_> = stored.chain(gone).collect();
+    let part = |energy: f64| format!("{:.3e}", energy / ledger.start_j);
     let table = table("Energy of the model", &rows)
         .words("Energy", |it| format!("{} {}", it.0, it.1.name))
         .number("at the end", |it| si(it.1.energy_j, "J"))
-        .number("part of the start", |it| {
-            format!("{:.3e}", it.1.energy_j / ledger.start_j)
-        });
+        .number("part of the start", |it| part(it.1.energy_j));
     html! {
         p { "At the release " (si(ledger.start_j, "J")) " were stored. Not accounted for: " (si(ledger.imbalance_j(), "J")) ", which is rounding." }
         (table.draw())

@@ -103,6 +103,7 @@ pub fn severity(outcome: &Outcome) -> Markup {
     let [speed, fastest] = speeds.map(|it| it * 1e3);
     let impulses = || truth.impacts.iter().map(|it| it.normal_impulse);
     let (hardest, sum) = (impulses().fold(0.0, f64::max), impulses().sum());
+    let [in_contact, dwell] = [seen.dwell_s, dwell(truth)].map(ms);
     let text = |value| significant(value, 4);
     let row = |name, seen, truth| (name, text(seen), text(truth));
     let mut rows = vec![
@@ -110,11 +111,7 @@ pub fn severity(outcome: &Outcome) -> Markup {
         row("Greatest speed into the wall, mm/s", speed, fastest),
         row("Greatest impulse, N\u{a0}s", seen.impulse_n_s, hardest),
         row("Sum of the impulses, N\u{a0}s", seen.total_impulse_n_s, sum),
-        (
-            "Time in permanent contact, ms",
-            ms(seen.dwell_s),
-            ms(dwell(truth)),
-        ),
+        ("Time in permanent contact, ms", in_contact, dwell),
     ];
     let only = |name, seen| (name, text(seen), "\u{2013}".to_owned());
     rows.push(only("Velocity index", seen.velocity_index));

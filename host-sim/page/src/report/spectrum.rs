@@ -15,10 +15,10 @@ const SHADE_DB: f64 = 6.0;
 const MICRO: f64 = 1e6;
 
 /// A curve: class, name, and the stretch of time that it is the mean of, s.
-type Part = (&'static str, &'static str, [f64; 2]);
+type MeanSpectrum = (&'static str, &'static str, [f64; 2]);
 
 /// Full spectrum and waterfall of x + j y; the rotor's spin, counter-clockwise positive, rad/s; name of the time axis, in s.
-pub fn spectra(found: &Spectrogram, spin: f64, parts: &[Part], time: &str) -> Markup {
+pub fn spectra(found: &Spectrogram, spin: f64, parts: &[MeanSpectrum], time: &str) -> Markup {
     let bins = found.spectra.first().map_or(0, |it| it.power.len());
     let reach = (TURNS * spin.abs() / TAU).max(LEAST);
     let reach = reach.min(found.frequency(bins.max(1) - 1));
@@ -31,7 +31,7 @@ pub fn spectra(found: &Spectrogram, spin: f64, parts: &[Part], time: &str) -> Ma
 }
 
 /// Amplitude against frequency.
-fn full(found: &Spectrogram, spin: f64, parts: &[Part], reach: f64) -> Markup {
+fn full(found: &Spectrogram, spin: f64, parts: &[MeanSpectrum], reach: f64) -> Markup {
     let curves: Vec<(&str, &str, Vec<f64>)> = (parts.iter())
         .filter_map(|(class, name, span)| Some((*class, *name, found.amplitudes(*span)?)))
         .collect();

@@ -79,25 +79,21 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     }
     let found: Vec<&Match> = matches.of_kind(EventKind::Impact).collect();
     let is_hard = |it: &Impact| it.normal_impulse / scene.rotor.mass >= DESIGN_JUMP;
-    let hard: Vec<_> = truth
-        .iter()
-        .zip(&found)
-        .filter(|it| is_hard(it.0))
-        .collect();
-    let hard_found = hard.iter().filter(|(_, it)| it.detected.is_some()).count();
+    let hard = || truth.iter().zip(&found).filter(|it| is_hard(it.0));
+    let hard_found = hard().filter(|(_, it)| it.detected.is_some()).count();
     let detected = found.iter().filter(|it| it.detected.is_some()).count();
     let forces = model.has_forces();
-    let row = |((index, truth), found): ((usize, _), &_)| Row {
+    let row = |((index, truth), &found): ((usize, _), &_)| Row {
         index,
         truth,
         pulse: model.impacts.get(index).and_then(|it| it.pulse),
         errors: model_errors(outcome, index),
-        found: *found,
+        found,
     };
     let rows: Vec<_> = truth.iter().enumerate().zip(&found).map(row).collect();
     html! {
         p {
-            (truth.len()) " impacts, " (detected) " detected. Of the " (hard.len())
+            (truth.len()) " impacts, " (detected) " detected. Of the " (hard().count())
             " whose velocity jump reaches " (si(DESIGN_JUMP, "m/s"))
             ", from which detection is the design target, " (hard_found) " were detected."
         }
@@ -136,35 +132,25 @@ struct Row<'a> {
 }
 
 fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
+    let milli = |value: f64| column(value * 1e3);
+    let found = |it: &Match| ["no", "yes"][usize::from(it.detected.is_some())];
+    let off = |it: &Row, k: usize| or_dash(it.errors.map(|it| it[k]), error);
+    let pulse = |it: &Row, of: fn(Pulse) -> f64| or_dash(it.pulse.map(of), column);
     let table = table("Impacts", rows)
         .number("Index", |it| it.index)
         .number("Time\nms", |it| ms(it.truth.state.time))
-        .number("Normal speed\nmm/s", |it| {
-            column(it.truth.normal_speed * 1e3)
-        })
-        .number("Impulse\nmN\u{a0}s", |it| {
-            column(it.truth.normal_impulse * 1e3)
-        })
-        .words("Detected", |it| {
-            ["no", "yes"][usize::from(it.found.detected.is_some())]
-        })
+        .number("Normal speed\nmm/s", |it| milli(it.truth.normal_speed))
+        .number("Impulse\nmN\u{a0}s", |it| milli(it.truth.normal_impulse))
+        .words("Detected", |it| found(it.found))
         .number("Latency\nms", |it| or_dash(it.found.latency_s, ms))
         .number("Onset error\nms", |it| or_dash(it.found.onset_error_s, ms))
-        .number("Model: time error\ns", |it| {
-            or_dash(it.errors.map(|it| it[0]), error)
-        })
-        .number("Model: speed error\nrelative", |it| {
-            or_dash(it.errors.map(|it| it[1]), error)
-        });
+        .number("Model: time error\ns", |it| off(it, 0))
+        .number("Model: speed error\nrelative", |it| off(it, 1));
     if !forces {
         return table.draw();
     }
     table
-        .number("Peak force\nN", |it| {
-            or_dash(it.pulse.map(|it| it.peak_force), column)
-        })
-        .number("Contact\nms", |it| {
-            or_dash(it.pulse.map(|it| it.duration * 1e3), column)
-        })
+        .number("Peak force\nN", |it| pulse(it, |it| it.peak_force))
+        .number("Contact\nms", |it| pulse(it, |it| it.duration * 1e3))
         .draw()
 }

@@ -53,19 +53,15 @@ impl Window {
             start: start.max(whole.start),
             end: length.min(whole.end),
         };
-        if whole.end - whole.start < 1.5 * (window.end - window.start) {
-            whole
-        } else {
-            window
-        }
+        let is_most = whole.end - whole.start < 1.5 * (window.end - window.start);
+        if is_most { whole } else { window }
     }
 
     /// Its time axis, for s.
     pub fn axis(self) -> Axis {
-        let (scale, label) = if self.end - self.start > 2.0 {
-            (1.0, "time since release, s")
-        } else {
-            (1e3, "time since release, ms")
+        let (scale, label) = match self.end - self.start > 2.0 {
+            true => (1.0, "time since release, s"),
+            false => (1e3, "time since release, ms"),
         };
         Axis::scaled(scale, self.start, self.end, label, 6.0)
     }
