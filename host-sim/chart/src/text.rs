@@ -47,19 +47,17 @@ pub fn or_dash(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
 
 /// A positive quantity in a column: three decimals, powers of ten where they would all be zero.
 pub fn column(value: f64) -> String {
-    if value >= 1e-3 {
-        format!("{value:.3}")
-    } else {
-        error(value)
+    match value >= 1e-3 {
+        true => format!("{value:.3}"),
+        false => error(value),
     }
 }
 
 /// A small error, in powers of ten.
 pub fn error(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else {
-        minus(&format!("{value:.1e}"))
+    match value {
+        0.0 => "0".to_owned(),
+        _ => minus(&format!("{value:.1e}")),
     }
 }
 

@@ -136,7 +136,7 @@ impl Mode {
 }
 
 /// What comes out of an anti-alias filter of eighth order, at rest before the first sample; its corner in Hz, below half
-/// of `rate` (Hz). Butterworth, as a chain of sections, by the bilinear rule with the corner kept in its place.
+/// of `rate` (Hz). It is Butterworth's, by the bilinear rule with the corner kept in its place.
 fn low_pass(signal: &[f64], corner: f64, rate: f64) -> Vec<f64> {
     let k = (PI * corner / rate).tan();
     let mut signal = signal.to_vec();

@@ -14,8 +14,8 @@ pub fn least(start: [f64; 4], spread: [f64; 4], cost: impl Fn([f64; 4]) -> f64) 
     for _ in 0..STEPS {
         corners.sort_by(|a, b| a.0.total_cmp(&b.0));
         let worst = corners[4];
-        let mean: [f64; 4] =
-            std::array::from_fn(|i| corners[..4].iter().map(|it| it.1[i]).sum::<f64>() / 4.0);
+        let mean = |i: usize| corners[..4].iter().map(|it| it.1[i]).sum::<f64>() / 4.0;
+        let mean: [f64; 4] = std::array::from_fn(mean);
         let move_by = |factor: f64| {
             let at = std::array::from_fn(|i| mean[i] + factor * (worst.1[i] - mean[i]));
             (cost(at), at)

@@ -12,7 +12,7 @@ use touchdown_run::outcome::{Detection, Outcome};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::names::channel_name;
 
-/// The outputs of the controller, its mode and the cause as a table; touches, alarms and zones of the guard in two lines.
+/// Outputs, mode and cause of the controller as a table; touches, alarms and zones of the guard in two lines.
 pub fn controller(conduct: &ControllerTrace, timebase: Timebase) -> Markup {
     let level = |on: bool| if on { "on" } else { "off" };
     let table = table("Outputs of the controller", &conduct.outputs)

@@ -71,14 +71,19 @@ pub fn in_ring(scene: &Scene, outcome: &Outcome) -> Markup {
 
 /// Whether the retainer ring moves in the trace.
 pub fn ring_moves(outcome: &Outcome) -> bool {
-    let moves = |it: &TracePoint| matches!(it.moving, Moving::Ring { position, .. } if position != [0.0; 2]);
+    let moves = |it: &TracePoint| match it.moving {
+        Moving::Ring { position, .. } => position != [0.0; 2],
+        _ => false,
+    };
     outcome.trace.iter().any(moves)
 }
 
 /// Whether its inner ring turns.
 pub fn race_turns(outcome: &Outcome) -> bool {
-    let turns =
-        |it: &TracePoint| matches!(it.moving, Moving::Ring { race_spin, .. } if race_spin != 0.0);
+    let turns = |it: &TracePoint| match it.moving {
+        Moving::Ring { race_spin, .. } => race_spin != 0.0,
+        _ => false,
+    };
     outcome.trace.iter().any(turns)
 }
 

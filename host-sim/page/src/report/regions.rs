@@ -9,8 +9,8 @@ use touchdown_chart::plot::Chart;
 /// Points of a boundary, closer together at its ends, where it is steep.
 const POINTS: u32 = 240;
 
-/// A, B and C as areas, with the boundary of B and the least speed of A, over a chart of rad/s over degrees; `side` is 1,
-/// or -1 where friction drives clockwise.
+/// A, B and C as areas, with the boundary of B and the least speed of A, in a chart of rad/s over degrees. `side` is 1, or
+/// -1 where friction drives clockwise.
 pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
     let (whirl, swing) = (plane.slowest_whirl(), plane.widest_swing());
     let [lowest, highest] = chart.y.ends();
@@ -24,10 +24,8 @@ pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
     let between = |ends, low: &dyn Fn(f64) -> f64, high: &dyn Fn(f64) -> f64, class| {
         let mut pen = chart.pen();
         for (phi, rate) in outline(ends, low, high) {
-            pen.line_to(
-                side * phi.to_degrees(),
-                (side * rate).clamp(lowest, highest),
-            );
+            let rate = (side * rate).clamp(lowest, highest);
+            pen.line_to(side * phi.to_degrees(), rate);
         }
         pen.fill(class)
     };

@@ -17,7 +17,8 @@ const MICRO: f64 = 1e6;
 /// A curve: class, name, and the stretch of time that it is the mean of, s.
 type MeanSpectrum = (&'static str, &'static str, [f64; 2]);
 
-/// Full spectrum and waterfall of x + j y; the rotor's spin, counter-clockwise positive, rad/s; name of the time axis, in s.
+/// Full spectrum and waterfall of x + j y. The rotor's spin is counter-clockwise positive, rad/s; `time` names the time
+/// axis, in s.
 pub fn spectra(found: &Spectrogram, spin: f64, parts: &[MeanSpectrum], time: &str) -> Markup {
     let bins = found.spectra.first().map_or(0, |it| it.power.len());
     let reach = (TURNS * spin.abs() / TAU).max(LEAST);

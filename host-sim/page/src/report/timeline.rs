@@ -19,7 +19,7 @@ const LANES: usize = 5;
 const NARROW: f64 = 330.0;
 
 /// Part of the width from which labels stand left of their lines.
-const TURNS: f64 = 0.6;
+const LEFT_FROM: f64 = 0.6;
 
 /// Advance of a label's letter, px.
 const LETTER: f64 = 6.4;
@@ -144,15 +144,12 @@ fn detected_phases(detection: &Detection, end: f64, time: fn(&DetectedEvent) -> 
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
     changes.dedup_by_key(|it| it.1);
     let ends = changes.iter().skip(1).map(|it| Some(it.0)).chain([None]);
-    let phases = changes
-        .iter()
-        .zip(ends)
-        .map(|(&(start_s, phase), next)| Phase {
-            phase,
-            start_s,
-            end_s: next.unwrap_or(end.max(start_s)),
-        });
-    phases.collect()
+    let phase = |(&(start_s, phase), next): (&_, Option<f64>)| Phase {
+        phase,
+        start_s,
+        end_s: next.unwrap_or(end.max(start_s)),
+    };
+    changes.iter().zip(ends).map(phase).collect()
 }
 
 /// A declared event, drawn below the bars.
@@ -173,7 +170,7 @@ impl Label {
     }
 
     fn text(&self, bars: f64) -> Markup {
-        let (anchor, dx) = match self.at > TURNS {
+        let (anchor, dx) = match self.at > LEFT_FROM {
             true => ("end", "-5"),
             false => ("start", "5"),
         };
@@ -185,7 +182,7 @@ impl Label {
     /// Left and right end as fractions of the narrowest chart.
     fn extent(&self) -> (f64, f64) {
         let width = (self.text.chars().count() as f64 * LETTER + 10.0) / NARROW;
-        match self.at > TURNS {
+        match self.at > LEFT_FROM {
             true => (self.at - width, self.at),
             false => (self.at, self.at + width),
         }
