@@ -157,21 +157,21 @@ impl Plane {
             ("skew", 100.0 * self.skew_rad.error),
         ];
         let (arc, residual) = (self.arc_deg, of_radius(self.residual_m));
-        if arc < LEAST_ARC {
-            Some(format!(
+        Some(if arc < LEAST_ARC {
+            format!(
                 "{arc:.0} degrees of the wall were touched, {LEAST_ARC} are the fewest: lead the rotor further round"
-            ))
+            )
         } else if residual > MOST_RESIDUAL {
-            Some(format!(
-                "the residual is {:.2} um, {residual:.1} % of the radius, {MOST_RESIDUAL} % is the most: the readings are no ellipse",
-                1e6 * self.residual_m
-            ))
+            let um = 1e6 * self.residual_m;
+            format!(
+                "the residual is {um:.2} um, {residual:.1} % of the radius, {MOST_RESIDUAL} % is the most: the readings are no ellipse"
+            )
         } else {
             let (name, error) = errors.into_iter().find(|it| it.1 > MOST_ERROR)?;
-            Some(format!(
+            format!(
                 "the 95 % error of the {name} is {error:.1} %, {MOST_ERROR} % is the most: lead the rotor round for longer"
-            ))
-        }
+            )
+        })
     }
 }
 

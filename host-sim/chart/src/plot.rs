@@ -16,26 +16,34 @@ const RESOLUTION: f64 = 0.35;
 /// An axis, in the unit that its label names.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Value at the left or lower end; its power of ten where the axis is logarithmic.
+    /// From the unit of the values to its own.
+    scale: f64,
+    /// At the left or lower end, in its unit; the power of ten where it is logarithmic.
     pub lo: f64,
-    /// Value at the right or upper end; likewise.
+    /// At the right or upper end; likewise.
     pub hi: f64,
     /// Quantity and unit.
-    pub label: String,
-    /// Distance of the ticks; in decades where the axis is logarithmic.
+    label: String,
+    /// Distance of the ticks; in decades where it is logarithmic.
     pub step: f64,
-    /// Logarithmic.
-    pub log: bool,
+    log: bool,
 }
 
 impl Axis {
     /// An axis with about `ticks` ticks at multiples of 1, 2 or 5.
     pub fn new(lo: f64, hi: f64, label: &str, ticks: f64) -> Self {
+        Self::scaled(1.0, lo, hi, label, ticks)
+    }
+
+    /// The same of ends and values that are multiplied by `scale` to be in its unit.
+    pub fn scaled(scale: f64, lo: f64, hi: f64, label: &str, ticks: f64) -> Self {
+        let (lo, hi) = (lo * scale, hi * scale);
         let hi = if hi > lo { hi } else { lo + 1.0 };
         let raw = (hi - lo) / ticks;
         let power = 10f64.powf(raw.log10().floor());
         let nice = [1.0, 2.0, 5.0].into_iter().find(|it| it * power >= raw);
         Self {
+            scale,
             lo,
             hi,
             label: label.to_owned(),
@@ -49,11 +57,9 @@ impl Axis {
         let (lo, hi) = (lo.log10().floor(), hi.log10().ceil());
         let hi = hi.max(lo + 1.0);
         Self {
-            lo,
-            hi,
-            label: label.to_owned(),
             step: ((hi - lo) / ticks).ceil(),
             log: true,
+            ..Self::new(lo, hi, label, ticks)
         }
     }
 
@@ -65,13 +71,17 @@ impl Axis {
 
     /// 0 at the left or lower end, 1 at the other.
     pub fn fraction(&self, value: f64) -> f64 {
-        let value = if self.log { value.log10() } else { value };
-        (value - self.lo) / (self.hi - self.lo)
+        let value = value * self.scale;
+        self.part(if self.log { value.log10() } else { value })
+    }
+
+    fn part(&self, shown: f64) -> f64 {
+        (shown - self.lo) / (self.hi - self.lo)
     }
 
     /// Position along x as an SVG percentage, kept within the chart.
     pub fn percent(&self, value: f64) -> String {
-        format!("{:.2}%", 100.0 * self.fraction(value).clamp(0.0, 1.0))
+        percent(self.fraction(value).clamp(0.0, 1.0))
     }
 
     /// Whether the value lies on the axis.
@@ -79,43 +89,35 @@ impl Axis {
         (0.0..=1.0).contains(&self.fraction(value))
     }
 
-    /// Values and texts of the ticks.
-    pub fn ticks(&self) -> Vec<(f64, String)> {
-        if self.log {
-            return self.powers();
-        }
+    /// The least and the greatest value that it shows, if it is linear.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.lo, self.hi].map(|end| end / self.scale)
+    }
+
+    /// Ticks: numbers in its unit, powers of ten where it is logarithmic, and their texts.
+    pub fn ticks(&self) -> impl Iterator<Item = (f64, String)> {
         let decimals = (-self.step.log10().floor()).max(0.0) as usize;
         let first = (self.lo / self.step - 1e-9).ceil() as i64;
         let last = (self.hi / self.step + 1e-9).floor() as i64;
+        let show = if self.log { ten_to } else { minus };
         (first..=last)
             .map(|number| number as f64 * self.step)
-            .map(|value| (value, minus(&format!("{value:.decimals$}"))))
-            .collect()
-    }
-
-    fn powers(&self) -> Vec<(f64, String)> {
-        let first = (self.lo / self.step).ceil() as i32;
-        let last = (self.hi / self.step).floor() as i32;
-        (first..=last)
-            .map(|number| number * self.step as i32)
-            .map(|power| (10f64.powi(power), power_of_ten(power)))
-            .collect()
+            .map(move |value| (value, show(&format!("{value:.decimals$}"))))
     }
 }
 
-/// Ten to a power, with the power raised.
-fn power_of_ten(power: i32) -> String {
-    const RAISED: [char; 10] = [
-        '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}',
-        '\u{2078}', '\u{2079}',
-    ];
-    let digits = power.to_string();
-    let raised = digits.chars().map(|digit| {
-        digit
-            .to_digit(10)
-            .map_or('\u{207b}', |digit| RAISED[digit as usize])
-    });
+/// Ten with a power, raised.
+fn ten_to(power: &str) -> String {
+    const RAISED: &str =
+        "\u{2070}\u{b9}\u{b2}\u{b3}\u{2074}\u{2075}\u{2076}\u{2077}\u{2078}\u{2079}";
+    let digit = |it: char| RAISED.chars().nth(it.to_digit(10)? as usize);
+    let raised = power.chars().map(|it| digit(it).unwrap_or('\u{207b}'));
     "10".chars().chain(raised).collect()
+}
+
+/// A part of the width.
+pub fn percent(fraction: f64) -> String {
+    format!("{:.2}%", 100.0 * fraction)
 }
 
 /// With a true minus sign.
@@ -139,10 +141,10 @@ pub struct Pen<'a> {
 
 impl Pen<'_> {
     fn place(&self, x: f64, y: f64) -> Option<(f64, f64)> {
-        let chart = self.chart;
-        let at = (chart.x.fraction(x), 1.0 - chart.y.fraction(y));
-        let near = at.0.abs() < 3.0 && at.1.abs() < 3.0;
-        near.then_some((at.0 * WIDTH, at.1 * chart.height))
+        let axes = self.chart;
+        let (x, y) = (axes.x.fraction(x), 1.0 - axes.y.fraction(y));
+        let near = x.abs() < 3.0 && y.abs() < 3.0;
+        near.then_some((x * WIDTH, y * axes.height))
     }
 
     /// Goes on to a point; where it is not finite or far outside, the curve breaks.
@@ -152,10 +154,9 @@ impl Pen<'_> {
         };
         match self.last {
             Some(from) if f64::hypot(to.0 - from.0, to.1 - from.1) < RESOLUTION => return,
-            Some(_) => self.path.push('L'),
-            None => self.path.push('M'),
+            Some(_) => self.push('L', to),
+            None => self.push('M', to),
         }
-        self.push(to);
         self.last = Some(to);
     }
 
@@ -163,9 +164,8 @@ impl Pen<'_> {
     pub fn dot(&mut self, x: f64, y: f64) {
         self.lift();
         if let Some(at) = self.place(x, y) {
-            self.path.push('M');
-            self.push(at);
-            self.path.push_str("h0");
+            self.push('M', at);
+            self.path += "h0";
         }
     }
 
@@ -173,15 +173,8 @@ impl Pen<'_> {
     pub fn rectangle(&mut self, x: [f64; 2], y: [f64; 2]) {
         let corners = (self.place(x[0], y[0]), self.place(x[1], y[1]));
         if let (Some((left, low)), Some((right, high))) = corners {
-            self.path.push('M');
-            self.push((left, low));
-            let _ = write!(
-                self.path,
-                "H{}V{}H{}",
-                coordinate(right),
-                coordinate(high),
-                coordinate(left)
-            );
+            let [left, low, right, high] = [left, low, right, high].map(coordinate);
+            self.path += &format!("M{left} {low}H{right}V{high}H{left}");
         }
     }
 
@@ -190,8 +183,8 @@ impl Pen<'_> {
         self.last = None;
     }
 
-    fn push(&mut self, (x, y): (f64, f64)) {
-        let _ = write!(self.path, "{} {}", coordinate(x), coordinate(y));
+    fn push(&mut self, command: char, (x, y): (f64, f64)) {
+        let _ = write!(self.path, "{command}{} {}", coordinate(x), coordinate(y));
     }
 
     /// The area inside, styled by its class.
@@ -232,6 +225,18 @@ impl Chart<'_> {
             path: String::new(),
             last: None,
         }
+    }
+
+    /// Lines across at a value and its opposite.
+    pub fn walls(&self, at: f64) -> Markup {
+        let mut pen = self.pen();
+        for side in [-1.0, 1.0] {
+            pen.lift();
+            for end in self.x.ends() {
+                pen.line_to(end, side * at);
+            }
+        }
+        pen.finish("wall")
     }
 
     /// A curve through these points, styled by its class.
@@ -285,21 +290,15 @@ impl Chart<'_> {
         let viewbox = format!("0 0 {WIDTH} {}", self.height);
         html! {
             (behind)
-            (self.rows())
+            @for (value, text) in self.y.ticks() {
+                @let y = coordinate((1.0 - self.y.part(value)) * self.height);
+                line.grid x1="0" x2="100%" y1=(y) y2=(y) {}
+                text.tick x="-6" y=(y) dy="4" text-anchor="end" { (text) }
+            }
             (columns(self.x, self.height))
             svg x="0" y="0" width="100%" height=(self.height) viewBox=(viewbox)
                 preserveAspectRatio="none" { (curves) }
             (front)
-        }
-    }
-
-    fn rows(&self) -> Markup {
-        html! {
-            @for (value, text) in self.y.ticks() {
-                @let y = coordinate((1.0 - self.y.fraction(value)) * self.height);
-                line.grid x1="0" x2="100%" y1=(y) y2=(y) {}
-                text.tick x="-6" y=(y) dy="4" text-anchor="end" { (text) }
-            }
         }
     }
 }
@@ -315,7 +314,7 @@ pub fn key(class: &str, name: &str) -> Markup {
 pub fn columns(x: &Axis, height: f64) -> Markup {
     html! {
         @for (value, text) in x.ticks() {
-            @let at = x.percent(value);
+            @let at = percent(x.part(value).clamp(0.0, 1.0));
             line.grid x1=(at) x2=(at) y1="0" y2=(height) {}
             text.tick x=(at) y=(height + 15.0) text-anchor="middle" { (text) }
         }
@@ -331,7 +330,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         let texts = |lo, hi| -> Vec<String> {
             let axis = Axis::new(lo, hi, "t", 5.0);
-            axis.ticks().into_iter().map(|(_, text)| text).collect()
+            axis.ticks().map(|(_, text)| text).collect()
         };
         assert_eq!(texts(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(texts(-0.5, 85.0), ["0", "20", "40", "60", "80"]);

@@ -8,18 +8,14 @@ pub const OPEN: usize = 10;
 /// Rows beyond this are left to the JSON output.
 const MOST: usize = 500;
 
-/// A table: its rows, and its columns.
+/// A table: its rows, and the heading and cells of each column.
 pub struct Table<'a, R> {
     name: &'a str,
     rows: &'a [R],
-    columns: Vec<Column<'a, R>>,
+    columns: Vec<(Markup, DrawCell<'a, R>)>,
 }
 
-struct Column<'a, R> {
-    head: &'a str,
-    is_number: bool,
-    cell: Box<dyn Fn(&R) -> Markup + 'a>,
-}
+type DrawCell<'a, R> = Box<dyn Fn(&R) -> Markup + 'a>;
 
 /// A table of these rows, still without a column. The name is for screen readers.
 pub fn table<'a, R>(name: &'a str, rows: &'a [R]) -> Table<'a, R> {
@@ -33,7 +29,7 @@ pub fn table<'a, R>(name: &'a str, rows: &'a [R]) -> Table<'a, R> {
 impl<'a, R> Table<'a, R> {
     /// With a column of words. The heading may have several lines.
     pub fn words<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
-        self.column(head, false, move |row| html! { td { (cell(row)) } })
+        self.column(head, None, move |row| html! { td { (cell(row)) } })
     }
 
     /// With a column of words, each with its style class.
@@ -42,7 +38,7 @@ impl<'a, R> Table<'a, R> {
         head: &'a str,
         cell: impl Fn(&R) -> (&'static str, V) + 'a,
     ) -> Self {
-        self.column(head, false, move |row| {
+        self.column(head, None, move |row| {
             let (class, words) = cell(row);
             html! { td class=(class) { (words) } }
         })
@@ -50,33 +46,28 @@ impl<'a, R> Table<'a, R> {
 
     /// With a column that names the rows.
     pub fn names<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
-        self.column(head, false, move |row| html! { th { (cell(row)) } })
+        self.column(head, None, move |row| html! { th { (cell(row)) } })
     }
 
     /// With a column of numbers.
     pub fn number<V: Render>(self, head: &'a str, cell: impl Fn(&R) -> V + 'a) -> Self {
-        self.column(head, true, move |row| html! { td.number { (cell(row)) } })
+        let cell = move |row: &R| html! { td.number { (cell(row)) } };
+        self.column(head, Some("number"), cell)
     }
 
-    fn column(mut self, head: &'a str, is_number: bool, cell: impl Fn(&R) -> Markup + 'a) -> Self {
-        let cell = Box::new(cell);
-        self.columns.push(Column {
-            head,
-            is_number,
-            cell,
-        });
+    fn column(mut self, head: &str, class: Option<&str>, cell: impl Fn(&R) -> Markup + 'a) -> Self {
+        let mut lines = head.split('\n');
+        let first = lines.next().unwrap_or_default();
+        let heading = html! { th class=[class] { (first) @for line in lines { br; (line) } } };
+        self.columns.push((heading, Box::new(cell)));
         self
     }
 
     /// Draws it in a container that scrolls. Rows after the first few are folded away.
     pub fn draw(&self) -> Markup {
         let shown = &self.rows[..self.rows.len().min(MOST)];
-        let open = if shown.len() > OPEN + 2 {
-            OPEN
-        } else {
-            shown.len()
-        };
-        let (open, folded) = shown.split_at(open);
+        let folds = shown.len() > OPEN + 2;
+        let (open, folded) = shown.split_at(if folds { OPEN } else { shown.len() });
         let left_out = self.rows.len() - shown.len();
         html! {
             (self.part(open))
@@ -91,21 +82,9 @@ impl<'a, R> Table<'a, R> {
         html! {
             div.scroll tabindex="0" role="region" aria-label=(self.name) {
                 table {
-                    thead { tr { @for column in &self.columns { (column.heading()) } } }
-                    tbody { @for row in rows { tr { @for it in &self.columns { ((it.cell)(row)) } } } }
+                    thead { tr { @for (heading, _) in &self.columns { (heading) } } }
+                    tbody { @for row in rows { tr { @for (_, cell) in &self.columns { (cell(row)) } } } }
                 }
-            }
-        }
-    }
-}
-
-impl<R> Column<'_, R> {
-    fn heading(&self) -> Markup {
-        let mut lines = self.head.split('\n');
-        html! {
-            th class=[self.is_number.then_some("number")] {
-                (lines.next().unwrap_or_default())
-                @for line in lines { br; (line) }
             }
         }
     }

@@ -8,11 +8,11 @@ pub fn si(value: f64, unit: &str) -> String {
     if !value.is_finite() {
         return "\u{2013}".to_owned();
     }
-    let magnitude = value.abs().log10();
-    let group = if value == 0.0 {
-        0
-    } else {
-        ((magnitude + 1e-9) / 3.0).floor().clamp(-5.0, 3.0) as i32
+    let group = match value {
+        0.0 => 0,
+        _ => ((value.abs().log10() + 1e-9) / 3.0)
+            .floor()
+            .clamp(-5.0, 3.0) as i32,
     };
     let prefix = PREFIXES[(group + 5) as usize];
     let scaled = significant(value / 1000f64.powi(group), 4);
@@ -21,8 +21,10 @@ pub fn si(value: f64, unit: &str) -> String {
 
 /// A number rounded to so many significant digits, without trailing zeros and exponent.
 pub fn significant(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0" } else { "\u{2013}" }.to_owned();
+    if value == 0.0 {
+        return "0".to_owned();
+    } else if !value.is_finite() {
+        return "\u{2013}".to_owned();
     }
     let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 17) as usize;
     let text = format!("{value:.decimals$}");
@@ -38,26 +40,24 @@ pub fn ms(seconds: f64) -> String {
     minus(&format!("{:.3}", seconds * 1e3))
 }
 
-/// Like [`ms`], a dash where there is none.
-pub fn ms_or_dash(seconds: Option<f64>) -> String {
-    seconds.map_or("\u{2013}".to_owned(), ms)
+/// A value as `show` writes it, a dash where there is none.
+pub fn or_dash(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
+    value.map_or("\u{2013}".to_owned(), show)
 }
 
 /// A positive quantity in a column: three decimals, powers of ten where they would all be zero.
 pub fn column(value: f64) -> String {
-    if value >= 1e-3 {
-        format!("{value:.3}")
-    } else {
-        error(value)
+    match value >= 1e-3 {
+        true => format!("{value:.3}"),
+        false => error(value),
     }
 }
 
 /// A small error, in powers of ten.
 pub fn error(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else {
-        minus(&format!("{value:.1e}"))
+    match value {
+        0.0 => "0".to_owned(),
+        _ => minus(&format!("{value:.1e}")),
     }
 }
 

@@ -5,7 +5,6 @@ use maud::{Markup, html};
 use crate::plot::{Axis, Chart};
 
 const HEIGHT: f64 = 150.0;
-const MICRO: f64 = 1e6;
 /// Strokes of a kind that a chart gets.
 const STROKES: usize = 400;
 const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
@@ -34,6 +33,12 @@ pub struct Waveform<'a> {
     pub strokes: [&'a [f64]; 2],
 }
 
+/// An axis that reaches somewhat beyond the farthest place, m, to either side.
+pub fn displacement_axis(name: &str, farthest: f64) -> Axis {
+    let reach = 1.12 * farthest;
+    Axis::scaled(1e6, -reach, reach, &format!("{name}, \u{b5}m"), 5.0)
+}
+
 /// Draws it, with dashed lines at the clearance.
 pub fn waveform(shown: &Waveform<'_>) -> Markup {
     let name = CHANNELS[shown.channel];
@@ -44,28 +49,20 @@ pub fn waveform(shown: &Waveform<'_>) -> Markup {
     }
     let [from, to] = shown.span;
     let x = Axis::new(from, to, shown.time, 6.0);
-    let reach = 1.12 * farthest * MICRO;
-    let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
     let chart = Chart {
         title: name,
         description: shown.description,
         x: &x,
-        y: &y,
+        y: &displacement_axis(name, farthest),
         height: HEIGHT,
     };
-    let mut wall = chart.pen();
-    for side in [-1.0, 1.0] {
-        wall.lift();
-        wall.line_to(x.lo, side * shown.clearance * MICRO);
-        wall.line_to(x.hi, side * shown.clearance * MICRO);
-    }
     let curve = |(class, points): &Curve<'_>| {
         let mut pen = chart.pen();
-        points(&mut |time, place| pen.line_to(time, place * MICRO));
+        points(&mut |time, place| pen.line_to(time, place));
         pen.finish(class)
     };
     let curves = html! {
-        (wall.finish("wall"))
+        (chart.walls(shown.clearance))
         @for it in shown.curves { (curve(it)) }
     };
     let strokes = shown.strokes.map(|times| {

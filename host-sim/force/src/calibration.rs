@@ -102,46 +102,28 @@ impl Calibration {
 
     /// H at the frequencies of `transform`, which holds the longest hit.
     pub fn response(&self, transform: &Transform) -> Response {
-        let bins = transform.bins();
-        let spectra: Vec<_> = self
-            .hits
-            .iter()
-            .map(|it| {
-                (
-                    transform.spectrum(&it.force),
-                    transform.spectrum(&it.acceleration),
-                )
-            })
-            .collect();
-        let sum = |of: &dyn Fn(Complex64, Complex64) -> Complex64| -> Vec<Complex64> {
-            (0..bins)
-                .map(|k| spectra.iter().map(|(f, a)| of(f[k], a[k])).sum())
-                .collect()
+        let spectra = |it: &Clean| [&it.force, &it.acceleration].map(|it| transform.spectrum(it));
+        let spectra: Vec<_> = self.hits.iter().map(spectra).collect();
+        let bins = 0..transform.bins();
+        let sum = |of: fn(Complex64, Complex64) -> Complex64| -> Vec<Complex64> {
+            let of_hits = |k: usize| spectra.iter().map(|[f, a]| of(f[k], a[k])).sum();
+            bins.clone().map(of_hits).collect()
         };
-        let cross = sum(&|f, a| a * f.conj());
-        let force = sum(&|f, _| f.norm_sqr().into());
-        let motion = sum(&|_, a| a.norm_sqr().into());
-        let least = f64::MIN_POSITIVE;
-        let h: Vec<Complex64> = (0..bins)
-            .map(|k| cross[k] / force[k].re.max(least))
-            .collect();
-        let rest: Vec<f64> = (0..bins)
-            .map(|k| (motion[k].re - cross[k].norm_sqr() / force[k].re.max(least)).max(0.0))
-            .collect();
+        let cross = sum(|f, a| a * f.conj());
+        let force = sum(|f, _| f.norm_sqr().into());
+        let motion = sum(|_, a| a.norm_sqr().into());
+        let force = |k: usize| force[k].re.max(f64::MIN_POSITIVE);
+        let rest = |k: usize| (motion[k].re - cross[k].norm_sqr() / force(k)).max(0.0);
+        let rest: Vec<f64> = bins.clone().map(rest).collect();
         // What the hits disagree by, where it is more than the noise.
         let free = (self.hits.len() - 1).max(1) as f64;
-        let variance = smooth(&rest)
-            .into_iter()
-            .zip(&force)
-            .map(|(rest, force)| (rest / free).max(self.noise) / force.re.max(least))
-            .collect();
-        let coherence = (0..bins)
-            .map(|k| 1.0 - rest[k] / motion[k].re.max(least))
-            .collect();
+        let spread = smooth(&rest);
+        let variance = |k: usize| (spread[k] / free).max(self.noise) / force(k);
+        let coherence = |k: usize| 1.0 - rest[k] / motion[k].re.max(f64::MIN_POSITIVE);
         Response {
-            h,
-            variance,
-            coherence,
+            h: bins.clone().map(|k| cross[k] / force(k)).collect(),
+            variance: bins.clone().map(variance).collect(),
+            coherence: bins.map(coherence).collect(),
         }
     }
 }
@@ -154,9 +136,9 @@ fn prepare(hit: &Hit, rate: f64) -> Result<Clean, String> {
     let moved: Vec<f64> = from_zero(&hit.acceleration, motion.mean);
     let peak = greatest(&pushed, 0.0);
     if peak <= CLEAR * force.noise {
+        let noise = force.noise;
         return Err(format!(
-            "the hit has no force: its greatest, {peak:.3e} N, is not {CLEAR} times its noise, {:.3e} N",
-            force.noise
+            "the hit has no force: its greatest, {peak:.3e} N, is not {CLEAR} times its noise, {noise:.3e} N"
         ));
     }
     if greatest(&moved, 0.0) <= CLEAR * motion.noise {
@@ -166,20 +148,15 @@ fn prepare(hit: &Hit, rate: f64) -> Result<Clean, String> {
     let skirt = (SKIRT * rate).ceil() as usize;
     let quiet = |it: &f64| it.abs() < OVER * peak;
     let begin = pushed[..top].iter().rposition(quiet).unwrap_or(0);
-    let end = top
-        + pushed[top..]
-            .iter()
-            .position(quiet)
-            .unwrap_or(pushed.len() - top);
+    let end = pushed[top..].iter().position(quiet);
+    let end = end.map_or(pushed.len(), |it| top + it);
     let window = begin.saturating_sub(skirt)..(end + skirt).min(pushed.len());
-    for (k, value) in pushed.iter_mut().enumerate() {
-        if window.contains(&k) {
-            continue;
-        }
+    let outside = (pushed.iter_mut().enumerate()).filter(|(k, _)| !window.contains(k));
+    for (k, value) in outside {
         if value.abs() >= SECOND * peak {
+            let apart = 1e3 * k.abs_diff(top) as f64 / rate;
             return Err(format!(
-                "the hammer hits twice: {value:.3e} N, {:.3} ms from the peak",
-                1e3 * k.abs_diff(top) as f64 / rate
+                "the hammer hits twice: {value:.3e} N, {apart:.3} ms from the peak"
             ));
         }
         *value = 0.0;
@@ -217,11 +194,10 @@ fn smooth(values: &[f64]) -> Vec<f64> {
     for value in values {
         sums.push(sums[sums.len() - 1] + value);
     }
-    (0..values.len())
-        .map(|k| {
-            let reach = (SMOOTH * k as f64) as usize;
-            let (from, to) = (k.saturating_sub(reach), (k + reach + 1).min(values.len()));
-            (sums[to] - sums[from]) / (to - from) as f64
-        })
-        .collect()
+    let mean = |k: usize| {
+        let reach = (SMOOTH * k as f64) as usize;
+        let (from, to) = (k.saturating_sub(reach), (k + reach + 1).min(values.len()));
+        (sums[to] - sums[from]) / (to - from) as f64
+    };
+    (0..values.len()).map(mean).collect()
 }

@@ -54,65 +54,60 @@ pub fn deconvolve(
     let samples = recording.acceleration[0].len();
     let longest = calibrations.iter().map(|it| it.longest()).max();
     let transform = Transform::holding(samples + longest.unwrap_or(0));
-    let inverses: Vec<Inverse> = (recording.acceleration.iter().zip(quiet))
-        .zip(calibrations)
-        .map(|((signal, quiet), calibration)| {
-            Inverse::new(&transform, signal, quiet, calibration, resolution)
-        })
-        .collect();
+    let axes = recording.acceleration.iter().zip(quiet).zip(calibrations);
+    let inverses = axes.map(|((signal, quiet), calibration)| {
+        Inverse::new(&transform, signal, quiet, calibration, resolution)
+    });
+    let inverses: Vec<Inverse> = inverses.collect();
     let mut search = Search {
         transform: &transform,
         inverses: &inverses,
-        force: vec![vec![0.0; transform.length]; inverses.len()],
-        contacts: Vec::new(),
+        found: Force {
+            axes: vec![vec![0.0; transform.length]; inverses.len()],
+            contacts: Vec::new(),
+            noise: noise(&inverses, quiet[0].samples),
+        },
         samples,
         skirt: (SKIRT * recording.rate / resolution.highest).ceil() as usize,
     };
-    let noise = search.noise(quiet[0].samples);
-    search.run(noise);
-    search.contacts.retain(|it| it.end <= samples);
-    let end = search.end();
-    for axis in &mut search.force {
+    search.run();
+    let (end, mut found) = (search.end(), search.found);
+    found.contacts.retain(|it| it.end <= samples);
+    for axis in &mut found.axes {
         axis.truncate(samples);
         axis[end..].fill(0.0);
     }
-    Force {
-        axes: search.force,
-        contacts: search.contacts,
-        noise,
-    }
+    found
+}
+
+fn noise(inverses: &[Inverse], quiet: usize) -> f64 {
+    let squares = |it: &Inverse| it.estimate[..quiet].iter().map(|it| it * it).sum::<f64>();
+    (inverses.iter().map(squares).sum::<f64>() / quiet as f64).sqrt()
 }
 
 struct Search<'a> {
     transform: &'a Transform,
     inverses: &'a [Inverse],
-    force: Vec<Vec<f64>>,
-    contacts: Vec<Range<usize>>,
+    found: Force,
     samples: usize,
     skirt: usize,
 }
 
 impl Search<'_> {
-    fn noise(&self, quiet: usize) -> f64 {
-        let squares = |signal: &Vec<f64>| signal[..quiet].iter().map(|it| it * it).sum::<f64>();
-        let estimates = self.inverses.iter().map(|it| &it.estimate);
-        (estimates.map(squares).sum::<f64>() / quiet as f64).sqrt()
-    }
-
     /// A record that ends while the device still moves looks like a force from about there on.
     fn end(&self) -> usize {
         self.samples - self.skirt.min(self.samples)
     }
 
-    fn run(&mut self, noise: f64) {
+    fn run(&mut self) {
         let end = self.end();
         let wrap = self.transform.length.saturating_sub(self.skirt);
-        self.contacts.push(end..wrap.max(self.samples + 1));
+        self.found.contacts.push(end..wrap.max(self.samples + 1));
         let mut rest = self.unexplained();
-        let mut floor = CLEAR * noise;
+        let mut floor = CLEAR * self.found.noise;
         for _ in 0..SEARCHES {
             let size = |k: usize| rest.iter().map(|it| it[k] * it[k]).sum::<f64>().sqrt();
-            let free = |k: &usize| !self.contacts.iter().any(|it| it.contains(k));
+            let free = |k: &usize| self.is_free(*k);
             let peak = (0..end).filter(free).map(size).fold(0.0, f64::max);
             floor = floor.max(FLOOR * peak);
             if peak <= floor {
@@ -121,15 +116,18 @@ impl Search<'_> {
             let level = (TOGETHER * peak).max(floor);
             let strong: Vec<usize> = (0..end).filter(|k| free(k) && size(*k) >= level).collect();
             for k in strong {
-                if !self.contacts.iter().any(|it| it.contains(&k)) {
-                    let contact = self.around(&rest, k, end);
-                    self.contacts.push(contact);
+                if self.is_free(k) {
+                    self.found.contacts.push(self.around(&rest, k, end));
                 }
             }
             self.merge();
             self.restore();
             rest = self.unexplained();
         }
+    }
+
+    fn is_free(&self, sample: usize) -> bool {
+        !self.found.contacts.iter().any(|it| it.contains(&sample))
     }
 
     /// The contact around a strong sample: from it up to its peak, then down both sides of that.
@@ -146,8 +144,8 @@ impl Search<'_> {
     }
 
     fn merge(&mut self) {
-        self.contacts.sort_by_key(|it| it.start);
-        self.contacts.dedup_by(|next, last| {
+        self.found.contacts.sort_by_key(|it| it.start);
+        self.found.contacts.dedup_by(|next, last| {
             let touch = next.start <= last.end && next.end <= self.samples;
             if touch {
                 last.end = last.end.max(next.end);
@@ -184,28 +182,26 @@ impl Search<'_> {
                     *way = rest + left / before * *way;
                 }
             }
-            self.force[axis] = force;
+            self.found.axes[axis] = force;
         }
     }
 
     /// 0 outside the contacts.
     fn cut(&self, signal: &[f64]) -> Vec<f64> {
         let mut cut = vec![0.0; signal.len()];
-        for contact in &self.contacts {
+        for contact in &self.found.contacts {
             cut[contact.clone()].copy_from_slice(&signal[contact.clone()]);
         }
         cut
     }
 
     fn unexplained(&self) -> Vec<Vec<f64>> {
-        (0..self.inverses.len())
-            .map(|axis| {
-                let inverse = &self.inverses[axis];
-                let kept = self.pass(&self.force[axis], &inverse.kept);
-                let pairs = inverse.estimate.iter().zip(kept);
-                pairs.map(|(first, kept)| first - kept).collect()
-            })
-            .collect()
+        let axes = self.inverses.iter().zip(&self.found.axes);
+        let rest = axes.map(|(inverse, force)| {
+            let pairs = inverse.estimate.iter().zip(self.pass(force, &inverse.kept));
+            pairs.map(|(first, kept)| first - kept).collect()
+        });
+        rest.collect()
     }
 
     /// A force through a filter.

@@ -68,16 +68,13 @@ fn strike(impact: &Impact, meeting: &Meeting, scene: &Scene) -> (Blow, Pulse) {
     let [x, y] = state.position;
     let out = [x / x.hypot(y), y / x.hypot(y)];
     let along = [-out[1], out[0]];
-    let slip = state.spin * scene.rotor.radius
-        + state.velocity[0] * along[0]
-        + state.velocity[1] * along[1];
+    let [vx, vy] = state.velocity;
+    let slip = state.spin * scene.rotor.radius + vx * along[0] + vy * along[1];
     let friction = scene.retainer.friction * slip.signum();
     let size = 1.0_f64.hypot(friction);
-    let part = |axis: usize| (out[axis] + friction * along[axis]) / size;
-    let direction = [part(0), part(1)];
-    let force: Vec<(f64, f64)> = (meeting.history().into_iter())
-        .map(|(time, normal)| (time, size * normal))
-        .collect();
+    let direction = [0, 1].map(|axis| (out[axis] + friction * along[axis]) / size);
+    let force = (meeting.history().into_iter()).map(|(time, normal)| (time, size * normal));
+    let force: Vec<(f64, f64)> = force.collect();
     let sum = |it: &[(f64, f64)]| 0.5 * (it[0].1 + it[1].1) * (it[1].0 - it[0].0);
     let truth = meeting.pulse();
     let pulse = Pulse {

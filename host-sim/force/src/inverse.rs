@@ -38,16 +38,13 @@ impl Inverse {
         let frequency = |k: usize| k as f64 * calibration.rate / transform.length as f64;
         let band = |k: &usize| calibration.band.contains(&frequency(*k));
         let power: Vec<f64> = response.h.iter().map(Complex64::norm_sqr).collect();
-        let sum =
-            |of: &dyn Fn(usize) -> f64| -> f64 { (0..transform.bins()).filter(band).map(of).sum() };
+        let bins = || (0..transform.bins()).filter(band);
+        let sum = |of: &dyn Fn(usize) -> f64| -> f64 { bins().map(of).sum() };
         let noise = signal.len() as f64 * quiet.noise * quiet.noise;
         let (moved, silent) = (sum(&|k| motion[k].norm_sqr()), sum(&|_| noise));
         // Of the force, at each frequency; where all is noise, a hundredth of that.
         let energy = (moved - silent).max(0.01 * silent) / sum(&|k| power[k]);
-        let mut sorted: Vec<f64> = (0..transform.bins())
-            .filter(band)
-            .map(|k| power[k])
-            .collect();
+        let mut sorted: Vec<f64> = bins().map(|k| power[k]).collect();
         sorted.sort_by(f64::total_cmp);
         let flat = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         let lambda = if energy > 0.0 { noise / energy } else { 0.0 };

@@ -64,9 +64,7 @@ impl Law {
             let next = forces.get(k + 1).copied().unwrap_or(0.0);
             now + part * (next - now)
         };
-        let top = (0..forces.len())
-            .max_by(|a, b| forces[*a].total_cmp(&forces[*b]))
-            .unwrap_or(0);
+        let top = highest(forces);
         // The parabola through the greatest and its neighbours.
         let (before, after) = (at(top.saturating_sub(1) as f64), at((top + 1) as f64));
         let (tilt, bend) = (0.5 * (after - before), 2.0 * forces[top] - before - after);
@@ -78,9 +76,8 @@ impl Law {
             k as f64 + (half - low) / (high - low)
         };
         let rise = (0..top).rev().find(|&k| forces[k] < half).unwrap_or(0);
-        let fall = (top..forces.len())
-            .find(|&k| at((k + 1) as f64) < half)
-            .unwrap_or(top);
+        let fall = (top..forces.len()).find(|&k| at((k + 1) as f64) < half);
+        let fall = fall.unwrap_or(top);
         let width = crossing(fall) - crossing(rise);
         let time = |k: usize| (k as f64 + 0.5) / POINTS as f64 * length;
         let mut force: Vec<f64> = (0..POINTS).map(|k| at(time(k)) / peak).collect();
@@ -100,11 +97,15 @@ impl Law {
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let part = self.duration / self.force.len() as f64;
         let time = move |k: usize| self.start + (k as f64 + 0.5) * part;
-        self.force
-            .iter()
-            .enumerate()
-            .map(move |(k, force)| (time(k), *force))
+        let forces = self.force.iter().enumerate();
+        forces.map(move |(k, force)| (time(k), *force))
     }
+}
+
+/// Index of the greatest, of several of them the last.
+pub fn highest(force: &[f64]) -> usize {
+    let by_force = |a: &usize, b: &usize| force[*a].total_cmp(&force[*b]);
+    (0..force.len()).max_by(by_force).unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@
 pub mod calibration;
 pub mod deconvolution;
 pub mod example;
-mod filter;
 pub mod instrument;
 mod inverse;
 mod law;
@@ -21,11 +20,11 @@ pub mod resolution;
 mod shape;
 mod simplex;
 pub mod spectrum;
-mod text;
 pub mod write;
 
-pub use page::page;
-pub use text::{json, table};
+pub use page::{page, text};
+
+use serde::Serialize;
 
 use calibration::Calibration;
 use deconvolution::Force;
@@ -36,20 +35,23 @@ use resolution::Resolution;
 use touchdown_base::input_error::InputError;
 
 /// A recording with its force.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Measurement {
-    /// Of each axis of the recording.
-    pub calibrations: Vec<Calibration>,
-    /// What the force shows.
-    pub resolution: Resolution,
-    /// Recovered.
-    pub force: Force,
     /// In order.
+    #[serde(rename = "pulses")]
     pub contacts: Vec<Contact>,
-    /// Of the recording, Hz.
-    pub sample_rate: f64,
     /// Lowest and highest frequency that all axes are calibrated at, Hz.
+    #[serde(rename = "band_hz")]
     pub band: [f64; 2],
+    /// Of the recording, Hz.
+    #[serde(rename = "sample_rate_hz")]
+    pub sample_rate: f64,
+    /// Of each axis of the recording.
+    #[serde(skip)]
+    pub calibrations: Vec<Calibration>,
+    /// Recovered.
+    #[serde(skip)]
+    pub force: Force,
 }
 
 impl Measurement {
@@ -67,9 +69,8 @@ pub fn measure(recording: &Recording, hits: &[Hits]) -> Result<Measurement, Inpu
         let rule = format!("is for the same axis as {}", first.file);
         return Err(InputError::at_line(&second.file, 1, rule));
     }
-    let axes = [Axis::X, Axis::Y];
     let mut calibrations = Vec::new();
-    for axis in &axes[..recording.acceleration.len()] {
+    for (axis, _) in [Axis::X, Axis::Y].iter().zip(&recording.acceleration) {
         let own = hits.iter().find(|it| it.axis == *axis).or(hits.first());
         let Some(own) = own else {
             let rule = "there is no calibration for it";
@@ -86,13 +87,11 @@ pub fn measure(recording: &Recording, hits: &[Hits]) -> Result<Measurement, Inpu
     let resolution = Resolution { highest: band[1] };
     let quiet = recording::quiet(recording)?;
     let force = deconvolution::deconvolve(recording, &quiet, &calibrations, &resolution);
-    let contacts = pulse::contacts(recording, &force, &resolution);
     Ok(Measurement {
-        calibrations,
-        resolution,
-        force,
-        contacts,
-        sample_rate: recording.rate,
+        contacts: pulse::contacts(recording, &force, &resolution),
         band,
+        sample_rate: recording.rate,
+        calibrations,
+        force,
     })
 }

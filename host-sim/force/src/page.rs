@@ -1,21 +1,57 @@
-//! The measurement as one page.
+//! What was measured, for people: a table, and a page.
 
 use maud::{Markup, html};
 
 use super::Measurement;
+use super::calibration::Calibration;
 use super::pulse::{Contact, Pulse};
 use super::recording::{Axis as Along, Recording};
 use super::spectrum::Transform;
+use touchdown_base::plain::shown;
 use touchdown_chart::plot::{Axis, Chart, key};
 use touchdown_chart::shell::page as shell;
 use touchdown_chart::table::table;
-use touchdown_chart::text::{ms, ms_or_dash, si, significant};
+use touchdown_chart::text::{ms, or_dash, si, significant};
 
 const HEIGHT: f64 = 280.0;
 /// Contacts that are drawn one by one, strongest first.
 const DRAWN: usize = 2;
 /// Lowest frequency of the drawing, Hz.
 const LOWEST: f64 = 10.0;
+
+/// The pulses as a table.
+pub fn text(recording: &str, measurement: &Measurement) -> String {
+    let [low, high] = measurement.band;
+    let mut text = format!(
+        "{}: {:.0} Hz; calibrated from {low:.0} to {high:.0} Hz",
+        shown(recording),
+        measurement.sample_rate
+    );
+    let calibrations = measurement.calibrations.iter();
+    if let Some(least) = calibrations.filter_map(|it| it.coherence).reduce(f64::min) {
+        text += &format!(", coherence {least:.4}");
+    }
+    text += &format!("; noise {:.1} N\n\n", measurement.force.noise);
+    if measurement.contacts.is_empty() {
+        return text + "No contact stands clear of the noise.\n";
+    }
+    text += "   time      peak  contact  impulse  direction\n";
+    text += "     ms         N       us      N s   from the bottom\n";
+    for pulse in measurement.pulses() {
+        let contact = pulse
+            .contact_time_s
+            .map(|time| format!("{:.1}", 1e6 * time));
+        let contact = contact.unwrap_or_else(|| "-".to_owned());
+        text += &format!(
+            "{:>7.3}  {:>8.1}  {contact:>7}  {:>7.4}  {:>+9.2}\n",
+            1e3 * pulse.time_s,
+            pulse.peak_force_n,
+            pulse.impulse_n_s,
+            pulse.direction_deg
+        );
+    }
+    text
+}
 
 /// Writes the page.
 pub fn page(recording: &Recording, measurement: &Measurement) -> String {
@@ -46,7 +82,7 @@ pub fn page(recording: &Recording, measurement: &Measurement) -> String {
         @if !strongest.is_empty() {
             section {
                 h2 { "Strongest contacts" }
-                (legend(&[("pulse", "recovered"), ("pulse run", "law of the contact, fitted")]))
+                ul.legend { (key("pulse", "recovered")) (key("pulse run", "law of the contact, fitted")) }
                 div.pair { @for contact in strongest { div { (one(contact)) } } }
             }
         }
@@ -73,7 +109,7 @@ fn rows(measurement: &Measurement) -> Markup {
     table("Contacts", &pulses)
         .number("Time\nms", |it| ms(it.time_s))
         .number("Peak\nN", |it| significant(it.peak_force_n, 4))
-        .number("Contact\nms", |it| ms_or_dash(it.contact_time_s))
+        .number("Contact\nms", |it| or_dash(it.contact_time_s, ms))
         .number("Impulse\nN s", |it| significant(it.impulse_n_s, 4))
         .number("Direction\ndegree", |it| significant(it.direction_deg, 4))
         .draw()
@@ -83,73 +119,60 @@ fn rows(measurement: &Measurement) -> Markup {
 fn whole(recording: &Recording, measurement: &Measurement) -> Markup {
     let axes = &measurement.force.axes;
     let samples = axes.first().map_or(0, Vec::len);
-    let time = |k: usize| 1e3 * (recording.start + k as f64 / recording.rate);
-    let x = Axis::new(time(0), time(samples), "time, ms", 8.0);
+    let time = |k: usize| recording.start + k as f64 / recording.rate;
     let values = || axes.iter().flatten().copied();
-    let y = force_axis(values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     let chart = Chart {
         title: "Recovered force",
         description: "Force on the retainer along each axis over the recording.",
-        x: &x,
-        y: &y,
+        x: &Axis::scaled(1e3, time(0), time(samples), "time, ms", 8.0),
+        y: &force_axis(values().fold(0.0, f64::min), values().fold(0.0, f64::max)),
         height: HEIGHT,
     };
     let classes = [("motion", "to the right"), ("impact", "up")];
     let drawn = html! {
         @for (axis, (class, _)) in axes.iter().zip(classes) {
-            @let points = axis.iter().enumerate().map(|(k, force)| (time(k), 1e-3 * force));
-            (chart.curve(class, points))
+            (chart.curve(class, axis.iter().enumerate().map(|(k, force)| (time(k), *force))))
         }
     };
     html! {
-        (legend(&classes[..axes.len()]))
+        ul.legend { @for (class, name) in &classes[..axes.len()] { (key(class, name)) } }
         (chart.plain(&drawn))
     }
 }
 
 fn one(contact: &Contact) -> Markup {
-    let times = || contact.recovered.iter().map(|it| 1e3 * it.0);
-    let forces = || contact.recovered.iter().map(|it| it.1);
-    let first = times().next().unwrap_or(0.0);
-    let last = times().next_back().unwrap_or(0.0);
-    let x = Axis::new(first, last, "time, ms", 5.0);
+    let points = &contact.recovered;
+    let forces = || points.iter().map(|it| it.1);
+    let [first, last] = [points.first(), points.last()].map(|it| it.map_or(0.0, |it| it.0));
     let top = forces().fold(contact.pulse.peak_force_n, f64::max);
-    let y = force_axis(forces().fold(0.0, f64::min), top);
     let chart = Chart {
         title: "Contact",
         description: "Recovered force of a contact, and the law of the contact fitted to it.",
-        x: &x,
-        y: &y,
+        x: &Axis::scaled(1e3, first, last, "time, ms", 5.0),
+        y: &force_axis(forces().fold(0.0, f64::min), top),
         height: HEIGHT,
     };
-    let scaled = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
-        points.iter().map(|it| (1e3 * it.0, 1e-3 * it.1)).collect()
-    };
-    let curves = html! {
-        (chart.curve("pulse", scaled(&contact.recovered)))
-        (chart.curve("pulse run", scaled(&contact.fitted)))
-    };
-    chart.plain(&curves)
+    chart.plain(&html! {
+        (chart.curve("pulse", points.iter().copied()))
+        (chart.curve("pulse run", contact.fitted.iter().copied()))
+    })
 }
 
 /// Size of H over frequency, and the band.
 fn device(measurement: &Measurement) -> Markup {
-    let curves: Vec<(&str, Vec<(f64, f64)>)> = measurement
-        .calibrations
-        .iter()
-        .map(|calibration| {
-            let transform = Transform::holding(calibration.longest());
-            let step = calibration.rate / transform.length as f64;
-            let response = calibration.response(&transform);
-            let sizes = response.h.iter().enumerate();
-            let points = sizes.map(|(k, h)| (k as f64 * step, h.norm()));
-            let class = match calibration.axis {
-                Along::X => "motion",
-                Along::Y => "impact",
-            };
-            (class, points.filter(|it| it.0 >= LOWEST).collect())
-        })
-        .collect();
+    let curve = |calibration: &Calibration| {
+        let transform = Transform::holding(calibration.longest());
+        let step = calibration.rate / transform.length as f64;
+        let response = calibration.response(&transform);
+        let sizes = response.h.iter().enumerate();
+        let points = sizes.map(|(k, h)| (k as f64 * step, h.norm()));
+        let class = match calibration.axis {
+            Along::X => "motion",
+            Along::Y => "impact",
+        };
+        (class, points.filter(|it| it.0 >= LOWEST).collect())
+    };
+    let curves: Vec<(_, Vec<_>)> = measurement.calibrations.iter().map(curve).collect();
     let sizes = || curves.iter().flat_map(|it| &it.1).map(|it| it.1);
     let [low, high] = measurement.band;
     let x = Axis::decades(LOWEST, 0.5 * measurement.sample_rate, "frequency, Hz", 6.0);
@@ -171,21 +194,8 @@ fn device(measurement: &Measurement) -> Markup {
     chart.draw(&behind, &drawn, &html! {})
 }
 
-/// For forces in kN.
+/// For forces in N.
 fn force_axis(low: f64, high: f64) -> Axis {
     let margin = 0.05 * (high - low).max(1e-3);
-    Axis::new(
-        1e-3 * (low - margin),
-        1e-3 * (high + margin),
-        "force, kN",
-        5.0,
-    )
-}
-
-fn legend(entries: &[(&str, &str)]) -> Markup {
-    html! {
-        ul.legend {
-            @for (class, name) in entries { (key(class, name)) }
-        }
-    }
+    Axis::scaled(1e-3, low - margin, high + margin, "force, kN", 5.0)
 }

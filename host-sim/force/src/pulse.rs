@@ -26,13 +26,16 @@ pub struct Pulse {
 }
 
 /// A contact.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Contact {
     /// Its numbers.
+    #[serde(flatten)]
     pub pulse: Pulse,
     /// Recovered force along the direction: pairs of s, in the recording's time, and N.
+    #[serde(skip)]
     pub recovered: Vec<(f64, f64)>,
     /// The fitted pulse likewise; empty where none fits.
+    #[serde(skip)]
     pub fitted: Vec<(f64, f64)>,
 }
 
@@ -46,13 +49,11 @@ pub fn contacts(recording: &Recording, force: &Force, resolution: &Resolution) -
         };
         let impulse = [sum(0), sum(1)];
         let size = impulse[0].hypot(impulse[1]);
-        let along: Vec<f64> = contact
-            .clone()
-            .map(|k| {
-                let parts = force.axes.iter().zip(impulse);
-                parts.map(|(axis, part)| axis[k] * part / size).sum()
-            })
-            .collect();
+        let along = |k: usize| {
+            let parts = force.axes.iter().zip(impulse);
+            parts.map(|(axis, part)| axis[k] * part / size).sum()
+        };
+        let along: Vec<f64> = contact.clone().map(along).collect();
         let fit = shape::fit(&along, rate, resolution);
         let fits = fit.misfit <= LOOSE;
         let highest = along.iter().copied().fold(0.0, f64::max);
@@ -69,8 +70,7 @@ pub fn contacts(recording: &Recording, force: &Force, resolution: &Resolution) -
         Contact {
             pulse,
             recovered: sampled.map(moved).collect(),
-            fitted: (fit.curve.into_iter())
-                .filter(|_| fits)
+            fitted: (fit.curve.into_iter().filter(|_| fits))
                 .map(moved)
                 .collect(),
         }

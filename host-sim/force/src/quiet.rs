@@ -39,9 +39,8 @@ impl Quiet {
         let most = greatest(signal, begin.mean);
         let blocks = signal[..samples].chunks(samples.div_ceil(BLOCKS));
         let noises = blocks.map(|it| Self::of(it, it.len()).noise);
-        let (low, high) = noises.fold((f64::INFINITY, 0.0), |(low, high), it| {
-            (f64::min(low, it), f64::max(high, it))
-        });
+        let low = noises.clone().fold(f64::INFINITY, f64::min);
+        let high = noises.fold(0.0, f64::max);
         if high > (UNEVEN * low).max(FAINT * most) {
             return Err(too_loud("here something happens in it"));
         }
@@ -51,10 +50,10 @@ impl Quiet {
         match loud {
             None => Ok(Self::of(signal, signal.len())),
             Some(loud) if loud >= samples + margin => Ok(Self::of(signal, loud - margin)),
-            Some(loud) => Err(too_loud(&format!(
-                "here it rises after {:.3} ms",
-                1e3 * loud as f64 / rate
-            ))),
+            Some(loud) => {
+                let after = 1e3 * loud as f64 / rate;
+                Err(too_loud(&format!("here it rises after {after:.3} ms")))
+            }
         }
     }
 
@@ -84,8 +83,6 @@ fn too_loud(what: &str) -> String {
 
 /// Greatest distance from `zero`.
 pub fn greatest(signal: &[f64], zero: f64) -> f64 {
-    signal
-        .iter()
-        .map(|it| (it - zero).abs())
-        .fold(0.0, f64::max)
+    let distances = signal.iter().map(|it| (it - zero).abs());
+    distances.fold(0.0, f64::max)
 }

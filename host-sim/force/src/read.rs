@@ -15,23 +15,17 @@ const SAME_RATE: f64 = 1e-4;
 /// Of a file, bytes: 13 s at the highest rate. All of it is held in memory.
 const LARGEST: u64 = 256 << 20;
 
-const RECORDING: &str = "time_s,ax_m_s2[,ay_m_s2]";
-const CALIBRATION: &str = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
-
 /// Reads a recording, header `time_s,ax_m_s2[,ay_m_s2]`.
 pub fn recording(path: &Path) -> Result<Recording, InputError> {
-    let table = Table::read(path, RECORDING, |names| {
-        matches!(
-            names,
-            ["time_s", "ax_m_s2"] | ["time_s", "ax_m_s2", "ay_m_s2"]
-        )
+    let table = Table::read(path, "time_s,ax_m_s2[,ay_m_s2]", |names| {
+        names.strip_suffix(&["ay_m_s2"]).unwrap_or(names) == ["time_s", "ax_m_s2"]
     })?;
     let rows = &table.rows;
-    let clock = table.clock(rows)?;
+    let (start, rate) = table.clock(rows)?;
     let axes = 1..table.names.len();
     Ok(Recording {
-        rate: table.rate(&clock)?,
-        start: clock.first,
+        rate,
+        start,
         acceleration: axes.map(|column| columns(rows, column)).collect(),
         file: table.file,
     })
@@ -40,7 +34,8 @@ pub fn recording(path: &Path) -> Result<Recording, InputError> {
 /// Reads known hits, header `[hit,]time_s,force_n,ax_m_s2`, or `ay_m_s2` for the other axis. A new
 /// value of `hit` begins the next one, with a time of its own.
 pub fn calibration(path: &Path) -> Result<Hits, InputError> {
-    let table = Table::read(path, CALIBRATION, |names| {
+    let header = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
+    let table = Table::read(path, header, |names| {
         let names = names.strip_prefix(&["hit"]).unwrap_or(names);
         matches!(names, ["time_s", "force_n", "ax_m_s2" | "ay_m_s2"])
     })?;
@@ -50,19 +45,16 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
     };
     let numbered = table.names[0] == "hit";
     let first = usize::from(numbered);
-    let blocks = table
-        .rows
-        .chunk_by(|a, b| !numbered || a.values[0] == b.values[0]);
+    let same = |a: &Row, b: &Row| !numbered || a.values[0] == b.values[0];
     let mut rate: Option<f64> = None;
     let mut hits = Vec::new();
-    for rows in blocks {
-        let own = table.rate(&table.clock(rows)?)?;
+    for rows in table.rows.chunk_by(same) {
+        let (_, own) = table.clock(rows)?;
         let common = *rate.get_or_insert(own);
         if (own / common - 1.0).abs() > SAME_RATE {
+            let [own, common] = [own, common].map(Number);
             let rule = format!(
-                "the sample rate is {} Hz, that of the first hit {} Hz: all hits need one rate",
-                Number(own),
-                Number(common)
+                "the sample rate is {own} Hz, that of the first hit {common} Hz: all hits need one rate"
             );
             return Err(InputError::at_line(&table.file, rows[0].line, rule));
         }
@@ -85,12 +77,9 @@ pub fn same_rate(recording: &Recording, hits: &Hits) -> Result<(), InputError> {
     if (recording.rate / hits.rate - 1.0).abs() <= SAME_RATE {
         return Ok(());
     }
-    let rule = format!(
-        "the sample rate is {} Hz, that of {} {} Hz: both need one rate",
-        Number(recording.rate),
-        hits.file,
-        Number(hits.rate)
-    );
+    let ([own, other], file) = ([recording.rate, hits.rate].map(Number), &hits.file);
+    let rule =
+        format!("the sample rate is {own} Hz, that of {file} {other} Hz: both need one rate");
     Err(InputError::at_line(&recording.file, 3, rule))
 }
 
@@ -130,21 +119,20 @@ impl Table {
             let row = Row::parse(text, line, &names);
             rows.push(row.map_err(|rule| InputError::at_line(&file, line, rule))?);
         }
+        let fail = |line, rule| Err(InputError::at_line(&file, line, rule));
         if rows.is_empty() {
-            let rule = "there are no rows after the header";
-            return Err(InputError::at_line(&file, 1, rule));
+            return fail(1, "there are no rows after the header");
         }
         if !text.ends_with('\n') {
-            let last = text.lines().count() as u64;
             let rule = "the last line is cut off: it does not end with a newline";
-            return Err(InputError::at_line(&file, last, rule));
+            return fail(text.lines().count() as u64, rule);
         }
         let names = names.into_iter().map(str::to_owned).collect();
         Ok(Self { file, names, rows })
     }
 
-    /// Follows the time of `rows`, of which there is one at least.
-    fn clock(&self, rows: &[Row]) -> Result<Clock, InputError> {
+    /// Time of the first of `rows`, of which there is one at least, s, and their rate, Hz.
+    fn clock(&self, rows: &[Row]) -> Result<(f64, f64), InputError> {
         let mut clock = Clock::new(rows[0].stamp);
         rows.iter().for_each(|row| clock.learn(row.stamp));
         for row in &rows[1..] {
@@ -155,20 +143,12 @@ impl Table {
             let rule = "one row alone has no sample rate";
             return Err(InputError::at_line(&self.file, rows[0].line, rule));
         }
-        Ok(clock)
-    }
-
-    fn rate(&self, clock: &Clock) -> Result<f64, InputError> {
         let rate = clock.rate().unwrap_or_default();
         if RATES.contains(&rate) {
-            return Ok(rate);
+            return Ok((clock.first, rate));
         }
-        let rule = format!(
-            "the sample rate must be {} to {} Hz, is {} Hz",
-            RATES.start(),
-            RATES.end(),
-            Number(rate)
-        );
+        let (least, most, rate) = (RATES.start(), RATES.end(), Number(rate));
+        let rule = format!("the sample rate must be {least} to {most} Hz, is {rate} Hz");
         Err(InputError::at_line(&self.file, 3, rule))
     }
 }
@@ -176,12 +156,9 @@ impl Table {
 impl Row {
     fn parse(text: &str, line: u64, names: &[&str]) -> Result<Self, String> {
         let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-        if fields.len() != names.len() {
-            return Err(format!(
-                "a row needs {} fields, this one has {}",
-                names.len(),
-                fields.len()
-            ));
+        let (needed, there) = (names.len(), fields.len());
+        if there != needed {
+            return Err(format!("a row needs {needed} fields, this one has {there}"));
         }
         let mut stamp = None;
         let mut values = Vec::with_capacity(fields.len());

@@ -65,14 +65,12 @@ pub fn hits(instrument: &Instrument, axis: Axis, seed: u64) -> Hits {
 pub fn recording(instrument: &Instrument, blows: &[Blow], duration: f64, seed: u64) -> Recording {
     let mut noise = ChaCha8Rng::seed_from_u64(seed);
     let forces = forces(blows, duration, instrument.step());
+    let record = |force: Vec<f64>| instrument.acceleration(&force, &mut noise);
     Recording {
         file: "rehearsal".to_owned(),
         rate: instrument.sample_rate,
         start: 0.0,
-        acceleration: forces
-            .iter()
-            .map(|force| instrument.acceleration(force, &mut noise))
-            .collect(),
+        acceleration: forces.map(record).into(),
     }
 }
 

@@ -4,7 +4,7 @@
 //! blunt edge does not lengthen it.
 
 use super::deconvolution::product;
-use super::law::Law;
+use super::law::{Law, highest};
 use super::resolution::Resolution;
 use super::simplex::least;
 
@@ -28,9 +28,7 @@ pub struct Fit {
 
 /// Fits a pulse to `force` (N), sampled at `rate` (Hz).
 pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
-    let top = (0..force.len())
-        .max_by(|a, b| force[*a].total_cmp(&force[*b]))
-        .unwrap_or(0);
+    let top = highest(force);
     let low = |k: &usize| force[*k] < 0.5 * force[top];
     let before = (0..top).rev().find(low).unwrap_or(0);
     let after = (top..force.len()).find(low).unwrap_or(force.len());
@@ -54,9 +52,7 @@ pub fn fit(force: &[f64], rate: f64, resolution: &Resolution) -> Fit {
         duration: trial.width * trial.law.duration,
         peak,
         misfit: (rest / force.len() as f64).sqrt() / peak.abs(),
-        curve: (trial.law.points())
-            .map(|(time, force)| (trial.peak_time + trial.width * time, peak * force))
-            .collect(),
+        curve: trial.points(peak),
     }
 }
 
@@ -68,18 +64,23 @@ struct Trial {
     width: f64,
 }
 
+impl Trial {
+    /// Pairs of s and force, which is at most `peak`.
+    fn points(&self, peak: f64) -> Vec<(f64, f64)> {
+        let points = self.law.points();
+        let place = |(time, force)| (self.peak_time + self.width * time, peak * force);
+        points.map(place).collect()
+    }
+}
+
 /// The peak (N) with which the trial is nearest to the force, and the sum of squares that it leaves.
 fn matched(trial: &Trial, force: &[f64], rate: f64, resolution: &Resolution) -> (f64, f64) {
     let part = trial.width * trial.law.duration / trial.law.force.len() as f64;
-    let points: Vec<(f64, f64)> = (trial.law.points())
-        .map(|(time, force)| (trial.peak_time + trial.width * time, part * force))
-        .collect();
+    let points = trial.points(part);
     let through = |k: usize| -> f64 {
         let now = k as f64 / rate;
-        let answers = points.iter();
-        answers
-            .map(|(time, force)| force * resolution.answer(now - time))
-            .sum()
+        let answer = |(time, force): &(f64, f64)| force * resolution.answer(now - time);
+        points.iter().map(answer).sum()
     };
     let shape: Vec<f64> = (0..force.len()).map(through).collect();
     let peak = product(&shape, force) / product(&shape, &shape).max(f64::MIN_POSITIVE);

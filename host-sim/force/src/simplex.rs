@@ -14,20 +14,16 @@ pub fn least(start: [f64; 4], spread: [f64; 4], cost: impl Fn([f64; 4]) -> f64) 
     for _ in 0..STEPS {
         corners.sort_by(|a, b| a.0.total_cmp(&b.0));
         let worst = corners[4];
-        let mean: [f64; 4] =
-            std::array::from_fn(|i| corners[..4].iter().map(|it| it.1[i]).sum::<f64>() / 4.0);
+        let mean = |i: usize| corners[..4].iter().map(|it| it.1[i]).sum::<f64>() / 4.0;
+        let mean: [f64; 4] = std::array::from_fn(mean);
         let move_by = |factor: f64| {
             let at = std::array::from_fn(|i| mean[i] + factor * (worst.1[i] - mean[i]));
             (cost(at), at)
         };
         let mirrored = move_by(-1.0);
         corners[4] = if mirrored.0 < corners[0].0 {
-            let farther = move_by(-2.0);
-            if farther.0 < mirrored.0 {
-                farther
-            } else {
-                mirrored
-            }
+            let farther = Some(move_by(-2.0));
+            farther.filter(|it| it.0 < mirrored.0).unwrap_or(mirrored)
         } else if mirrored.0 < corners[3].0 {
             mirrored
         } else {

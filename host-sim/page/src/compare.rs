@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use touchdown_chart::plot::key;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
-use touchdown_chart::text::significant;
+use touchdown_chart::text::{or_dash, significant};
 use touchdown_chart::waveform::{Line, Waveform, waveform};
 use touchdown_run::compare::Comparison;
 use touchdown_run::compare::table::verdict;
@@ -14,22 +14,23 @@ use touchdown_scene::Scene;
 
 /// Writes the page.
 pub fn page(scene: &Scene, comparison: &Comparison) -> String {
-    let [a, b] = &comparison.files;
+    let ([a, b], aligned) = (&comparison.files, &comparison.aligned);
+    let [first, second] = comparison.regimes.map(|it| it.map_or("none", <&str>::from));
     let body = html! {
         p.kind { "Two recordings" }
         h1 { (a) " and " (b) }
         p { "Scene: " (scene.heading()) }
         p class=(if comparison.beyond > 0 { "verdict alarm" } else { "verdict" }) {
-            (verdict(comparison)) ". Regime: " (regime(comparison, 0)) ", " (regime(comparison, 1)) "."
+            (verdict(comparison)) ". Regime: " (first) ", " (second) "."
         }
         @for warning in &comparison.warnings { p.alarm { (warning) } }
         @if let Some(excerpts) = &comparison.excerpts {
             section {
                 h2 { "First drop" }
-                @for channel in 0..comparison.aligned.waveform_rms_m.len() { (panel(channel, excerpts, scene, comparison)) }
+                @for channel in 0..aligned.waveform_rms_m.len() { (panel(channel, excerpts, scene, aligned.shift_s)) }
                 ul.legend {
                     (key("motion", a))
-                    (key("sensed", &format!("{b}, shifted by {:.6}\u{a0}s", -comparison.aligned.shift_s)))
+                    (key("sensed", &format!("{b}, shifted by {:.6}\u{a0}s", -aligned.shift_s)))
                 }
             }
         }
@@ -42,19 +43,9 @@ pub fn page(scene: &Scene, comparison: &Comparison) -> String {
     in_style(&format!("{a} and {b}"), &body).into_string()
 }
 
-fn regime(comparison: &Comparison, index: usize) -> &'static str {
-    comparison.regimes[index].map_or("none", <&str>::from)
-}
-
-fn panel(
-    channel: usize,
-    excerpts: &[Excerpt; 2],
-    scene: &Scene,
-    comparison: &Comparison,
-) -> Markup {
-    let [a, b] = excerpts;
+fn panel(channel: usize, [a, b]: &[Excerpt; 2], scene: &Scene, shift: f64) -> Markup {
     let first = |line: Line<'_>| a.draw(channel, 0.0, line);
-    let second = |line: Line<'_>| b.draw(channel, -comparison.aligned.shift_s, line);
+    let second = |line: Line<'_>| b.draw(channel, -shift, line);
     waveform(&Waveform {
         channel,
         span: [a.start, a.time(a.positions.len())],
@@ -68,9 +59,7 @@ fn panel(
 }
 
 fn events(comparison: &Comparison) -> Markup {
-    let text = |value: Option<f64>, scale: f64, digits: i32| {
-        value.map_or("\u{2013}".to_owned(), |it| significant(it * scale, digits))
-    };
+    let text = |value, scale, digits| or_dash(value, |it| significant(it * scale, digits));
     if comparison.events.is_empty() {
         return html! { p { "None." } };
     }

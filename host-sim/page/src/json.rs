@@ -1,5 +1,7 @@
 //! What `--json` writes; SI, full precision, unknown values null.
 
+use std::num::NonZeroU64;
+
 use serde::Serialize;
 use touchdown_core::health::Condition;
 use touchdown_core::sample::CHANNELS;
@@ -123,8 +125,8 @@ struct EventsJson<'a> {
 struct ReplayJson<'a> {
     events: Vec<EventJson<'a>>,
     forecasts: &'a [Forecast],
-    #[serde(skip_serializing_if = "is_none")]
-    left_out: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<NonZeroU64>,
     severity: Severity,
     samples: u64,
     faults: u64,
@@ -195,17 +197,13 @@ pub fn replay(replay: &Replay) -> serde_json::Result<String> {
     text(&ReplayJson {
         events: events(detection),
         forecasts: &detection.forecasts,
-        left_out: detection.left_out,
+        left_out: NonZeroU64::new(detection.left_out),
         severity: detection.severity,
         samples: detection.summary.samples,
         faults: detection.summary.faults,
         health: detection.summary.conditions,
         controller: replay.conduct.told(replay.timebase),
     })
-}
-
-fn is_none(count: &u64) -> bool {
-    *count == 0
 }
 
 /// As every command writes it: indented, with an end of line.
@@ -249,13 +247,11 @@ fn impact((index, impact): (usize, &Impact)) -> ImpactJson {
 
 fn rings<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Vec<RingJson<'a>> {
     let rings = scene.rings().iter().zip(&outcome.model.histories.rings);
-    rings
-        .enumerate()
-        .map(|(index, (ring, model))| RingJson {
-            name: &ring.name,
-            z_m: ring.place,
-            ring: outcome.model.seats.get(index),
-            history: history(model),
-        })
-        .collect()
+    let rings = rings.enumerate().map(|(index, (ring, model))| RingJson {
+        name: &ring.name,
+        z_m: ring.place,
+        ring: outcome.model.seats.get(index),
+        history: history(model),
+    });
+    rings.collect()
 }

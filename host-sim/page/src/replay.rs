@@ -1,9 +1,9 @@
 //! The replay of a recording as one HTML page.
 
 use maud::{Markup, html};
-use touchdown_core::event::EventKind;
 
-use crate::report::spectrum::{Spectra, spectra};
+use crate::report::spectrum::spectra;
+use crate::report::timeline::onsets;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{ms, si, significant};
@@ -33,7 +33,8 @@ pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) 
         @if let Some(drop) = drop {
             section {
                 h2 { "First drop" }
-                (close(drop, scene, replay))
+                @let span = [drop.start, drop.time(drop.positions.len())];
+                (panels(span, scene, replay, &|channel, line| drop.draw(channel, 0.0, line)))
             }
         }
         section {
@@ -76,13 +77,6 @@ fn whole(scene: &Scene, replay: &Replay) -> Markup {
     })
 }
 
-fn close(drop: &Excerpt, scene: &Scene, replay: &Replay) -> Markup {
-    let span = [drop.start, drop.time(drop.positions.len())];
-    panels(span, scene, replay, &|channel, line| {
-        drop.draw(channel, 0.0, line)
-    })
-}
-
 /// A chart for each channel; `draw` hands out its points, s and m.
 fn panels(
     span: [f64; 2],
@@ -90,12 +84,7 @@ fn panels(
     replay: &Replay,
     draw: &dyn Fn(usize, Line<'_>),
 ) -> Markup {
-    let onsets = |impacts: bool| -> Vec<f64> {
-        let events = replay.detection.events.iter();
-        let wanted = events.filter(|it| (it.event == EventKind::Impact) == impacts);
-        wanted.map(|it| it.onset_s).collect()
-    };
-    let (events, impacts) = (onsets(false), onsets(true));
+    let [events, impacts] = [false, true].map(|it| onsets(&replay.detection, it));
     let panel = |channel: usize| {
         let points = |line: Line<'_>| draw(channel, line);
         waveform(&Waveform {
@@ -116,19 +105,15 @@ fn panels(
 /// Before and after the first drop's onset.
 fn spectrum(scene: &Scene, replay: &Replay) -> Markup {
     let drop = replay.first_drop().map(|it| it.onset_s);
+    let (begin, end) = (f64::NEG_INFINITY, f64::INFINITY);
     let parts = match drop {
         Some(onset) => vec![
-            ("levitated", "before it", [f64::NEG_INFINITY, onset]),
-            ("motion", "from the first drop on", [onset, f64::INFINITY]),
+            ("levitated", "before it", [begin, onset]),
+            ("motion", "from the first drop on", [onset, end]),
         ],
-        None => vec![("motion", "all of it", [f64::NEG_INFINITY, f64::INFINITY])],
+        None => vec![("motion", "all of it", [begin, end])],
     };
-    spectra(&Spectra {
-        found: &replay.spectrogram,
-        spin: scene.rotor.spin,
-        parts,
-        time: "time, s",
-    })
+    spectra(&replay.spectrogram, scene.rotor.spin, &parts, "time, s")
 }
 
 fn events(replay: &Replay) -> Markup {
@@ -137,14 +122,11 @@ fn events(replay: &Replay) -> Markup {
         return html! { p { "None." } };
     }
     table("Events", events)
-        .words("Event", |it| match it.fault {
-            Some(fault) => format!(
-                "{} of {}: {}",
-                <&str>::from(it.event),
-                fault.channel,
-                fault.kind
-            ),
-            None => <&str>::from(it.event).to_owned(),
+        .words("Event", |it| {
+            let fault = it
+                .fault
+                .map(|it| format!(" of {}: {}", it.channel, it.kind));
+            <&str>::from(it.event).to_owned() + &fault.unwrap_or_default()
         })
         .number("Onset\ns", |it| format!("{:.6}", it.onset_s))
         .number("Declared\ns", |it| format!("{:.6}", it.declared_s))

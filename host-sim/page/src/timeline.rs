@@ -1,16 +1,16 @@
 //! What the terminal shows: the true phases beside what the detector said, in 80 columns.
 
 use touchdown_core::event::EventKind;
-use touchdown_core::health::Condition;
 
-use touchdown_base::history::{History, Phase, PhaseKind};
+use crate::report::monitor::unsound;
+use touchdown_base::history::{History, Phase, PhaseKind, Pulse};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
 use touchdown_run::matching::{Match, Matches, match_events, regime_event};
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
-use touchdown_scene::names::{channel_name, phase_name, regime_name};
+use touchdown_scene::names::{phase_name, regime_name};
 use touchdown_scene::scales::validity;
 
 /// Phases and impacts that are listed before the rest is summed up.
@@ -27,7 +27,7 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
     text += &phases(outcome, &matches, paint);
     text += &impacts(outcome, &matches, paint);
     text += &regime(outcome, &matches, paint);
-    text.extend(accuracy(outcome).into_iter().map(|line| line + "\n"));
+    text.extend(accuracy(outcome).map(|line| line + "\n"));
     text += &forecasts(&outcome.detection, paint);
     text += &severity(&outcome.detection);
     text += &outcome.conduct.told(Timebase::of(scene)).text(paint);
@@ -40,13 +40,10 @@ pub fn drop(scene: &Scene, outcome: &Outcome, paint: Paint) -> String {
 
 fn heading(scene: &Scene, paint: Paint) -> String {
     let heading = shown(scene.heading());
-    let mut words = heading.split_whitespace().peekable();
-    let mut lines = vec![words.next().unwrap_or_default().to_owned()];
-    for word in words {
-        let last = lines
-            .last_mut()
-            .filter(|line| line.len() + 1 + word.len() <= 79);
-        match last {
+    let mut lines: Vec<String> = Vec::new();
+    for word in heading.split_whitespace() {
+        let fits = |line: &&mut String| line.len() + 1 + word.len() <= 79;
+        match lines.last_mut().filter(fits) {
             Some(line) => *line += &format!(" {word}"),
             None => lines.push(word.to_owned()),
         }
@@ -65,11 +62,8 @@ fn heading(scene: &Scene, paint: Paint) -> String {
 }
 
 fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let head = format!(
-        "\n{:<12}{:>12}{:>12}  {:<10}{:>13}{:>12}",
-        "phase", "from ms", "to ms", "detected", "onset ms", "latency ms"
-    );
-    let mut text = paint.bold(&head) + "\n";
+    let head = "\nphase            from ms       to ms  detected       onset ms  latency ms";
+    let mut text = paint.bold(head) + "\n";
     let phases = &outcome.truth.whole.phases;
     for phase in phases.iter().take(LISTED) {
         text += &format!(
@@ -78,17 +72,13 @@ fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
             millis(phase.start_s),
             millis(phase.end_s)
         );
-        let begun = event_of(phase).and_then(|kind| {
-            matches
-                .of_kind(kind)
-                .find(|event| (event.onset_s - phase.start_s).abs() <= SAME)
-        });
-        if let Some(event) = begun {
+        let begins = |event: &&Match| (event.onset_s - phase.start_s).abs() <= SAME;
+        if let Some(event) = event_of(phase).and_then(|it| matches.of_kind(it).find(begins)) {
             text += &verdict(event, &outcome.detection, paint);
         }
         text.push('\n');
     }
-    text + &more(phases.len(), "phases")
+    text + &more(phases.len(), LISTED, "phases")
 }
 
 /// The event that a phase begins with.
@@ -110,20 +100,16 @@ fn verdict(event: &Match, detection: &Detection, paint: Paint) -> String {
     let detected = &detection.events[index];
     format!(
         "  {}{:>13}{:>12}",
-        paint.good(&format!("{:<10}", fate(detected))),
+        paint.good(&format!("{:<10}", fate(detected).unwrap_or("declared"))),
         millis(detected.onset_s),
         optional(event.latency_s.map(millis)),
     )
 }
 
-fn fate(event: &DetectedEvent) -> &'static str {
-    if event.confirmed_s.is_some() {
-        "confirmed"
-    } else if event.withdrawn_s.is_some() {
-        "withdrawn"
-    } else {
-        "declared"
-    }
+/// What became of it after it was declared.
+fn fate(event: &DetectedEvent) -> Option<&'static str> {
+    let confirmed = event.confirmed_s.map(|_| "confirmed");
+    confirmed.or(event.withdrawn_s.map(|_| "withdrawn"))
 }
 
 fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
@@ -131,16 +117,9 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     if truth.is_empty() {
         return String::new();
     }
-    let head = format!(
-        "\n{:<8}{:>12}{:>10}{:>13}{:>15}{:>10}{:>12}",
-        "impact",
-        "at ms",
-        "mm/s",
-        ["accurate to", "model off by"][usize::from(outcome.by_reference)],
-        "onset error ms",
-        "seen mm/s",
-        "latency ms"
-    );
+    let off = ["accurate to", "model off by"][usize::from(outcome.by_reference)];
+    let head =
+        format!("\nimpact         at ms      mm/s{off:>13} onset error ms seen mm/s  latency ms");
     let mut text = paint.bold(&head) + "\n";
     let found = matches.of_kind(EventKind::Impact);
     for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
@@ -170,15 +149,13 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         };
         text.push('\n');
     }
-    text + &more(truth.len(), "impacts") + &forces(&outcome.model.histories.whole)
+    text + &more(truth.len(), LISTED, "impacts") + &forces(&outcome.model.histories.whole)
 }
 
 /// The contact forces of the model's impacts, where it has any.
 fn forces(model: &History) -> String {
-    let Some(hardest) = model
-        .pulses()
-        .max_by(|a, b| a.peak_force.total_cmp(&b.peak_force))
-    else {
+    let by_force = |a: &Pulse, b: &Pulse| a.peak_force.total_cmp(&b.peak_force);
+    let Some(hardest) = model.pulses().max_by(by_force) else {
         return String::new();
     };
     let longest = model.pulses().map(|it| it.duration).fold(0.0, f64::max);
@@ -196,12 +173,10 @@ fn regime(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let Some(kind) = regime_event(truth) else {
         return text + "\n";
     };
-    let found = matches
-        .of_kind(kind)
-        .find_map(|event| event.detected)
-        .map(|index| &outcome.detection.events[index]);
-    text += &match found {
-        Some(event) => paint.good(&format!("; declared at {} ms", millis(event.declared_s))),
+    let found = matches.of_kind(kind).find_map(|event| event.detected);
+    let declared = found.map(|index| outcome.detection.events[index].declared_s);
+    text += &match declared {
+        Some(time) => paint.good(&format!("; declared at {} ms", millis(time))),
         None => paint.bad("; not declared"),
     };
     text + "\n"
@@ -213,11 +188,8 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let head = format!(
-        "\n{:<12}{:>12}{:>12}{:>15}",
-        "predicted", "forward", "backward", "whirls from ms"
-    );
-    let mut text = paint.bold(&head) + "\n";
+    let head = "\npredicted        forward    backward whirls from ms";
+    let mut text = paint.bold(head) + "\n";
     for forecast in all.iter().take(LISTED) {
         text += &format!(
             "{:<12}{:>12.2}{:>12.2}{:>15}\n",
@@ -227,7 +199,7 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
             optional(forecast.begins_s.map(millis)),
         );
     }
-    text + &more(all.len(), "forecasts")
+    text + &more(all.len(), LISTED, "forecasts")
 }
 
 fn severity(detection: &Detection) -> String {
@@ -242,10 +214,8 @@ fn severity(detection: &Detection) -> String {
         it.velocity_index,
     );
     if it.whirl_load_n > 0.0 {
-        text += &format!(
-            "whirl up to {:.0} Hz, {:.0} N\n",
-            it.whirl_frequency_hz, it.whirl_load_n
-        );
+        let (frequency, load) = (it.whirl_frequency_hz, it.whirl_load_n);
+        text += &format!("whirl up to {frequency:.0} Hz, {load:.0} N\n");
     }
     text
 }
@@ -267,64 +237,49 @@ pub fn left_out(outcome: &Outcome) -> impl Iterator<Item = String> {
 }
 
 /// How far to trust the model's numbers.
-pub fn accuracy(outcome: &Outcome) -> Vec<String> {
-    let Some(accuracy) = &outcome.accuracy else {
-        return Vec::new();
-    };
-    let mut lines = Vec::new();
-    if let Some(worst) = accuracy.worst() {
-        let (time, speed) = (worst.time_s, worst.normal_speed_m_s * 1e3);
-        lines.push(format!(
-            "accuracy: times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s"
-        ));
-    }
-    if let Some(index) = accuracy.uncertain_from {
-        lines.push(format!(
-            "accuracy: from impact {index} on not certain: read statistics"
-        ));
-    } else {
-        let place = accuracy.end.position_m * 1e3;
-        lines.push(format!("accuracy: place at the end to {place:.0e} mm"));
-    }
-    if !accuracy.regime_is_certain {
-        lines.push("accuracy: the regime is not certain".to_owned());
-    }
-    lines
+pub fn accuracy(outcome: &Outcome) -> impl Iterator<Item = String> {
+    let lines = outcome.accuracy.iter().flat_map(|it| {
+        let worst = it.worst().map(|it| {
+            let (time, speed) = (it.time_s, it.normal_speed_m_s * 1e3);
+            format!("times of impacts to {time:.0e} s, speeds to {speed:.0e} mm/s")
+        });
+        let end = match it.uncertain_from {
+            Some(index) => format!("from impact {index} on not certain: read statistics"),
+            None => format!("place at the end to {:.0e} mm", it.end.position_m * 1e3),
+        };
+        let uncertain = !it.regime_is_certain;
+        let regime = uncertain.then(|| "the regime is not certain".to_owned());
+        [worst, Some(end), regime].into_iter().flatten()
+    });
+    lines.map(|line| format!("accuracy: {line}"))
 }
 
 fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
-    let mut text = String::new();
-    for line in left_out(outcome) {
-        text += &(paint.bad(&line) + "\n");
-    }
+    let mut lines: Vec<String> = left_out(outcome).collect();
     let regime = outcome.model.histories.whole.regime;
     if regime != outcome.truth.whole.regime {
-        let line = format!("the model ends as {}", regime_name(regime));
-        text += &(paint.bad(&line) + "\n");
+        lines.push(format!("the model ends as {}", regime_name(regime)));
     }
     if !matches.false_events.is_empty() {
-        let line = format!("{} events that did not happen", matches.false_events.len());
-        text += &(paint.bad(&line) + "\n");
+        let count = matches.false_events.len();
+        lines.push(format!("{count} events that did not happen"));
     }
+    let mut text: String = lines.iter().map(|it| paint.bad(it) + "\n").collect();
     let told = outcome.detection.events.iter().filter_map(|event| {
-        let fault = event.fault?;
-        let (channel, kind) = (fault.channel, fault.kind);
-        let at = millis(event.declared_s);
-        Some(format!("sensor {channel}: {kind}, told at {at} ms\n"))
+        let (fault, at) = (event.fault?, millis(event.declared_s));
+        let sensor = format!("sensor {}: {}", fault.channel, fault.kind);
+        Some(format!("{sensor}, told at {at} ms\n"))
     });
     let told: Vec<_> = told.collect();
     text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
-    text += &more(told.len(), "sensor faults");
+    text += &more(told.len(), LISTED, "sensor faults");
     text + &samples_line(&outcome.detection)
 }
 
 /// What the detector was fed, and the fingerprint by which two machines are compared.
 fn samples_line(detection: &Detection) -> String {
-    let conditions = (0..).zip(detection.summary.conditions);
-    let bad: String = conditions
-        .filter(|(_, condition)| *condition != Condition::Ok)
-        .map(|(channel, it)| format!("; channel {} {}", channel_name(channel), it))
-        .collect();
+    let bad = unsound(detection).map(|(channel, it)| format!("; channel {channel} {it}"));
+    let bad: String = bad.collect();
     format!(
         "{} samples, {} unusable channel values{bad}; detector state {:08x}\n",
         detection.summary.samples, detection.summary.faults, detection.summary.state_hash
@@ -340,36 +295,25 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
         samples_line(detection)
     );
     if !detection.events.is_empty() {
-        text += &format!(
-            "\n{:<15}{:>16}{:>16}{:>12}{:>7}{:>12}\n",
-            "event", "onset s", "declared s", "", "plane", "speed mm/s"
-        );
+        text +=
+            "\nevent                   onset s      declared s              plane  speed mm/s\n";
     }
     for event in detection.events.iter().take(REPLAYED) {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
-        let fault = event
-            .fault
-            .map(|fault| format!("  {} {}", fault.channel, fault.kind));
+        let fault = (event.fault).map(|it| format!("  {} {}", it.channel, it.kind));
         let line = format!(
             "{:<15}{:>16.7}{:>16.7}{:>12}{:>7}{:>12}{}",
             <&str>::from(event.event),
             event.onset_s,
             event.declared_s,
-            if fate(event) == "declared" {
-                ""
-            } else {
-                fate(event)
-            },
+            fate(event).unwrap_or_default(),
             event.plane,
             speed.unwrap_or_default(),
             fault.unwrap_or_default(),
         );
         text += &format!("{}\n", line.trim_end());
     }
-    let more = detection.events.len().saturating_sub(REPLAYED);
-    if more > 0 {
-        text += &format!("... {more} more events, with --json\n");
-    }
+    text += &more(detection.events.len(), REPLAYED, "events, with --json");
     if detection.left_out > 0 {
         let left_out = detection.left_out;
         text += &format!("{left_out} further messages of the detector were counted, not kept\n");
@@ -377,11 +321,10 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
     text
 }
 
-fn more(count: usize, what: &str) -> String {
-    if count > LISTED {
-        format!("... {} more {what}\n", count - LISTED)
-    } else {
-        String::new()
+fn more(count: usize, listed: usize, what: &str) -> String {
+    match count.saturating_sub(listed) {
+        0 => String::new(),
+        more => format!("... {more} more {what}\n"),
     }
 }
 
@@ -395,10 +338,9 @@ fn short(value: f64) -> f64 {
 }
 
 fn seconds(difference: f64) -> String {
-    if difference == 0.0 {
-        "0 s".to_owned()
-    } else {
-        format!("{:.0e} s", difference.abs())
+    match difference.abs() {
+        0.0 => "0 s".to_owned(),
+        apart => format!("{apart:.0e} s"),
     }
 }
 

@@ -15,6 +15,7 @@ use touchdown_force::pulse::Pulse;
 use touchdown_force::recording::{Axis, Hits, Recording};
 use touchdown_force::rehearsal;
 use touchdown_force::rehearsal::{Blow, half_sine};
+use touchdown_force::resolution::Resolution;
 use touchdown_force::spectrum::Transform;
 use touchdown_force::{Measurement, measure, write};
 use touchdown_tests::binary::touchdown;
@@ -314,7 +315,7 @@ fn an_impulse_comes_back_as_what_the_band_shows_of_it() {
             .iter()
             .map(|it| it.1)
             .fold(0.0, f64::max);
-        let shown = impulse * found.resolution.answer(0.0);
+        let shown = impulse * Resolution { highest: found.band[1] }.answer(0.0);
         println!(
             "{:.0} us: impulse {:+.2e}; contact {:.0} us; greatest {:.2} of an impulse's",
             1e6 * duration,

@@ -30,11 +30,11 @@ pub(super) fn measure(args: &ForceArgs) -> Result<(), Failure> {
         .map(|file| read::calibration(Path::new(file)))
         .collect();
     let measurement = touchdown_force::measure(&recording, &hits?)?;
-    out.json("--json", || touchdown_force::json(&measurement))?;
+    out.json("--json", || json::text(&measurement))?;
     out.put("--report", || {
         touchdown_force::page(&recording, &measurement)
     })?;
-    out.finish(&touchdown_force::table(name, &measurement))
+    out.finish(&touchdown_force::text(name, &measurement))
 }
 
 fn write_example(folder: &str) -> Result<(), Failure> {

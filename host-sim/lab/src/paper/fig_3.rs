@@ -9,7 +9,7 @@ use super::rig::{on_wall, pendulum_square, rate};
 use touchdown_base::history::PhaseKind;
 use touchdown_base::regions::{Orbit, Plane};
 use touchdown_chart::plot::{Axis, Chart};
-use touchdown_page::report::regions::{View, areas};
+use touchdown_page::report::regions::areas;
 use touchdown_scene::Scene;
 use touchdown_truth::reference::Reference;
 
@@ -83,13 +83,9 @@ pub fn drawing(base: &Scene, curves: &[Curve]) -> Markup {
         y: &y,
         height: HEIGHT,
     };
-    let view = View {
-        plane: &plane(base),
-        side: 1.0,
-        factor: 1.0,
-    };
+    let plane = plane(base);
     let drawn = html! {
-        (areas(view, &chart))
+        (areas(&plane, 1.0, &chart))
         @for curve in curves.iter().filter(|it| it.figure == FIGURE) {
             (curve.draw(&chart, [1.0, 1.0]))
         }

@@ -1,9 +1,10 @@
-//! How far the model's numbers may be off: estimated, or by the independent reference.
+//! How far the model's numbers may be off: estimated, or by the independent reference; and its account of the energy.
 
 use maud::{Markup, html};
 use touchdown_base::history::History;
+use touchdown_base::ledger::Ledger;
 use touchdown_chart::table::table;
-use touchdown_chart::text::{error, ms, si, significant};
+use touchdown_chart::text::{error, ms, or_dash, si, significant};
 use touchdown_run::accuracy::RunAccuracy;
 use touchdown_run::outcome::Outcome;
 use touchdown_scene::Scene;
@@ -17,6 +18,13 @@ type Row = [String; 4];
 
 /// Times of one kind, s.
 type Times = fn(&History) -> &[f64];
+
+/// What may begin several times.
+const STARTS: [(&str, Times); 3] = [
+    ("Permanent contact", |it| &it.contact_starts),
+    ("Rolling", |it| &it.rolling_starts),
+    ("Lift-off", |it| &it.lift_offs),
+];
 
 /// How far the model's numbers may be off.
 pub fn accuracy(scene: &Scene, outcome: &Outcome) -> Markup {
@@ -42,38 +50,29 @@ fn estimated(model: &History, accuracy: &RunAccuracy) -> Markup {
     for (index, (impact, known)) in model.impacts.iter().zip(&accuracy.impacts).enumerate() {
         let certain = accuracy.uncertain_from != Some(index);
         let errors = known.filter(|_| certain);
-        let errors = errors.map(|it| [it.time_s, it.normal_speed_m_s]);
-        let [time, speed] =
-            [(0, "s"), (1, "m/s")].map(|(k, unit)| bound(errors.map(|it| it[k]), unit));
-        rows.push([format!("Impact {index}, ms"), ms(impact.state.time), time]);
-        rows.push([
-            format!("Impact {index}, mm/s"),
-            mm_s(impact.normal_speed),
-            speed,
-        ]);
+        let time = bound(errors.map(|it| it.time_s), "s");
+        let speed = bound(errors.map(|it| it.normal_speed_m_s), "m/s");
+        let [at, hit] = ["ms", "mm/s"].map(|unit| format!("Impact {index}, {unit}"));
+        rows.push([at, ms(impact.state.time), time]);
+        rows.push([hit, mm_s(impact.normal_speed), speed]);
         if !certain || index + 1 == IMPACTS {
             break;
         }
     }
-    let mut first = |name: &str, times: &[f64], errors: &[Option<f64>]| {
-        if let (Some(time), Some(error)) = (times.first(), errors.first()) {
+    let (contact, rolling) = (&accuracy.contact_starts_s, &accuracy.rolling_starts_s);
+    let errors = [contact, rolling, &accuracy.lift_offs_s];
+    for ((name, times), errors) in STARTS.into_iter().zip(errors) {
+        if let (Some(time), Some(error)) = (times(model).first(), errors.first()) {
             rows.push([format!("{name}, first, ms"), ms(*time), bound(*error, "s")]);
         }
-    };
-    first(
-        "Permanent contact",
-        &model.contact_starts,
-        &accuracy.contact_starts_s,
-    );
-    first("Rolling", &model.rolling_starts, &accuracy.rolling_starts_s);
-    first("Lift-off", &model.lift_offs, &accuracy.lift_offs_s);
+    }
     let regime = ["not certain", "certain"][usize::from(accuracy.regime_is_certain)];
     rows.push(["Regime", regime_name(model.regime), regime].map(str::to_owned));
-    let table = table("The model's numbers and their estimated errors", &rows)
+    table("The model's numbers and their estimated errors", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())
-        .number("Estimated error", |it| it[2].clone());
-    table.draw()
+        .number("Estimated error", |it| it[2].clone())
+        .draw()
 }
 
 fn bound(error: Option<f64>, unit: &str) -> String {
@@ -94,29 +93,24 @@ fn against_reference(scene: &Scene, outcome: &Outcome) -> Markup {
         row("First impact, ms", both.map(first), "s", ms),
         row("Peak impact speed, mm/s", both.map(peak), "m/s", mm_s),
     ];
-    let starts: [(_, Times); 3] = [
-        ("Permanent contact", |it| &it.contact_starts),
-        ("Rolling", |it| &it.rolling_starts),
-        ("Lift-off", |it| &it.lift_offs),
-    ];
-    for (name, of) in starts {
+    for (name, of) in STARTS {
         let first = both.map(|it| of(it).first().copied());
         if first != [None; 2] {
             rows.push(row(&format!("{name}, first, ms"), first, "s", ms));
         }
     }
-    let same = model.regime == truth.regime;
-    let same = if same { "same" } else { "differs" };
+    let same = ["differs", "same"][usize::from(model.regime == truth.regime)];
     let [ours, theirs] = both.map(|it| regime_name(it.regime));
     rows.push(["Regime", ours, theirs, same].map(str::to_owned));
-    let apart = error(apart(model, truth) / scene.retainer.clearance);
+    let ([x, y], [u, v]) = (model.end.position, truth.end.position);
+    let apart = error(f64::hypot(x - u, y - v) / scene.retainer.clearance);
     rows.push(["Position at the end, part of the clearance", "", "", &apart].map(str::to_owned));
-    let table = table("Model against reference", &rows)
+    table("Model against reference", &rows)
         .words("Quantity", |it| it[0].clone())
         .number("Model", |it| it[1].clone())
         .number("Reference", |it| it[2].clone())
-        .number("Difference", |it| it[3].clone());
-    table.draw()
+        .number("Difference", |it| it[3].clone())
+        .draw()
 }
 
 /// The greatest speed of an impact, m/s.
@@ -125,22 +119,31 @@ pub fn peak(history: &History) -> Option<f64> {
     speeds.reduce(f64::max)
 }
 
-fn apart(model: &History, truth: &History) -> f64 {
-    let ([x, y], [u, v]) = (model.end.position, truth.end.position);
-    f64::hypot(x - u, y - v)
-}
-
 fn count_row(name: &str, [model, truth]: [usize; 2]) -> Row {
     let [a, b, apart] = [model, truth, model.abs_diff(truth)].map(|it| it.to_string());
     [name.to_owned(), a, b, apart]
 }
 
 fn row(name: &str, both: [Option<f64>; 2], unit: &str, show: fn(f64) -> String) -> Row {
-    let cell = |value: Option<f64>| value.map_or("\u{2013}".to_owned(), show);
-    let apart = match both {
-        [Some(model), Some(truth)] => format!("{}\u{a0}{unit}", error(model - truth)),
-        _ => "\u{2013}".to_owned(),
-    };
-    let [model, truth] = both.map(cell);
+    let [model, truth] = both;
+    let apart = model.zip(truth).map(|(model, truth)| model - truth);
+    let apart = or_dash(apart, |it| format!("{}\u{a0}{unit}", error(it)));
+    let [model, truth] = both.map(|it| or_dash(it, show));
     [name.to_owned(), model, truth, apart]
+}
+
+/// The ledger as a table, each amount with its part of what there was.
+pub fn energy(ledger: &Ledger) -> Markup {
+    let stored = ledger.stored.iter().map(|it| ("in", it));
+    let gone = ledger.gone.iter().map(|it| ("gone:", it));
+    let rows: Vec<_> = stored.chain(gone).collect();
+    let part = |energy: f64| format!("{:.3e}", energy / ledger.start_j);
+    let table = table("Energy of the model", &rows)
+        .words("Energy", |it| format!("{} {}", it.0, it.1.name))
+        .number("at the end", |it| si(it.1.energy_j, "J"))
+        .number("part of the start", |it| part(it.1.energy_j));
+    html! {
+        p { "At the release " (si(ledger.start_j, "J")) " were stored. Not accounted for: " (si(ledger.imbalance_j(), "J")) ", which is rounding." }
+        (table.draw())
+    }
 }

@@ -1,16 +1,14 @@
 //! Displacement x and y against time.
 
-use super::stretch::far;
-use super::timeline::{percent, strokes, visible};
-use super::window::Window;
+use super::timeline::{onsets, strokes, visible};
+use super::window::{Window, far};
 use maud::{Markup, html};
-use touchdown_chart::plot::{Axis, Chart, key};
-use touchdown_core::event::EventKind;
-use touchdown_run::outcome::{DetectedEvent, Outcome, TracePoint};
+use touchdown_chart::plot::{Axis, Chart, key, percent};
+use touchdown_chart::waveform::displacement_axis;
+use touchdown_run::outcome::{Outcome, TracePoint};
 use touchdown_scene::Scene;
 
 const HEIGHT: f64 = 190.0;
-const MICRO: f64 = 1e6;
 
 /// Draws both axes for a stretch of time.
 pub fn displacement(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
@@ -28,55 +26,40 @@ pub fn displacement(window: Window, scene: &Scene, outcome: &Outcome) -> Markup 
 }
 
 fn panel(axis: usize, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
-    let (x, factor) = window.axis(6.0);
     // A ring that moves lets the rotor beyond its clearance.
     let farthest = shown(&outcome.trace, window)
         .iter()
         .map(|point| point.state.position[axis].abs())
         .filter(|place| place.is_finite())
         .fold(scene.retainer.clearance, f64::max);
-    let reach = 1.12 * farthest * MICRO;
-    let name = ["x (right)", "y (up)"][axis];
-    let y = Axis::new(-reach, reach, &format!("{name}, \u{b5}m"), 5.0);
     let chart = Chart {
         title: ["Displacement x against time", "Displacement y against time"][axis],
         description: "True motion as a line over bands in the colour of the true phase, sensed values \
                       as dots, dashed lines at the clearance, upright lines at changes.",
-        x: &x,
-        y: &y,
+        x: &window.axis(),
+        y: &displacement_axis(["x (right)", "y (up)"][axis], farthest),
         height: HEIGHT,
     };
     let mut motion = chart.pen();
     let mut sensed = chart.pen();
     let mut last: Option<&TracePoint> = None;
     for point in shown(&outcome.trace, window) {
-        let time = point.state.time * factor;
-        let position = point.state.position[axis] * MICRO;
+        let (time, position) = (point.state.time, point.state.position[axis]);
         match last {
             Some(from) if far(from, point, scene.retainer.clearance) => motion.dot(time, position),
             _ => motion.line_to(time, position),
         }
         last = Some(point);
         if let Some(position) = point.sensed {
-            sensed.dot(time, position[axis] * MICRO);
+            sensed.dot(time, position[axis]);
         }
     }
-    let mut wall = chart.pen();
-    for side in [-1.0, 1.0] {
-        wall.lift();
-        wall.line_to(x.lo, side * scene.retainer.clearance * MICRO);
-        wall.line_to(x.hi, side * scene.retainer.clearance * MICRO);
-    }
     let curves = html! {
-        (wall.finish("wall"))
+        (chart.walls(scene.retainer.clearance))
         (sensed.finish("sensed"))
         (motion.finish("motion"))
     };
-    chart.draw(
-        &bands(outcome, &x, factor),
-        &curves,
-        &marks(outcome, &x, factor),
-    )
+    chart.draw(&bands(outcome, chart.x), &curves, &marks(outcome, chart.x))
 }
 
 /// The points of the trace within a stretch of time, and one more at either end.
@@ -86,28 +69,24 @@ fn shown(trace: &[TracePoint], window: Window) -> &[TracePoint] {
     &trace[first.saturating_sub(1)..(end + 1).min(trace.len())]
 }
 
-fn bands(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
+fn bands(outcome: &Outcome, x: &Axis) -> Markup {
     html! {
-        @for (phase, from, to) in visible(&outcome.truth.whole.phases, x, factor) {
+        @for (phase, from, to) in visible(&outcome.truth.whole.phases, x) {
             rect class={ "band " (<&str>::from(phase)) } x=(percent(from)) width=(percent(to - from))
                 y="0" height=(HEIGHT) {}
         }
     }
 }
 
-fn marks(outcome: &Outcome, x: &Axis, factor: f64) -> Markup {
-    let onsets = |impacts: bool| -> Vec<f64> {
-        let wanted = |it: &&DetectedEvent| (it.event == EventKind::Impact) == impacts;
-        let events = outcome.detection.events.iter();
-        events.filter(wanted).map(|it| it.onset_s).collect()
-    };
+fn marks(outcome: &Outcome, x: &Axis) -> Markup {
+    let onsets = |impacts| onsets(&outcome.detection, impacts);
     let truth = &outcome.truth.whole;
     let changes: Vec<f64> = truth.phases.iter().map(|it| it.start_s).collect();
     let hits: Vec<f64> = truth.impacts.iter().map(|it| it.state.time).collect();
     html! {
-        @for at in strokes(&changes, x, factor) { line.true-mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
-        @for at in strokes(&onsets(false), x, factor) { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
-        @for at in strokes(&hits, x, factor) { line.hit x1=(at) x2=(at) y1="0" y2="9" {} }
-        @for at in strokes(&onsets(true), x, factor) { line.hit x1=(at) x2=(at) y1=(HEIGHT - 9.0) y2=(HEIGHT) {} }
+        @for at in strokes(&changes, x) { line.true-mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
+        @for at in strokes(&onsets(false), x) { line.mark x1=(at) x2=(at) y1="0" y2=(HEIGHT) {} }
+        @for at in strokes(&hits, x) { line.hit x1=(at) x2=(at) y1="0" y2="9" {} }
+        @for at in strokes(&onsets(true), x) { line.hit x1=(at) x2=(at) y1=(HEIGHT - 9.0) y2=(HEIGHT) {} }
     }
 }

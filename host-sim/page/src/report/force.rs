@@ -1,6 +1,5 @@
 //! What the wall took: the impulse of each impact, and its force over time where the materials are known.
 
-use super::timeline::percent;
 use super::window::Window;
 use maud::{Markup, html};
 use touchdown_base::history::{History, Impact};
@@ -25,9 +24,8 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
         vec![(None, &outcome.truth.whole, scene.retainer.restitution)]
     } else {
         let rings = scene.rings().iter().zip(&outcome.truth.rings);
-        rings
-            .map(|(ring, truth)| (Some(&*ring.name), truth, ring.retainer.restitution))
-            .collect()
+        let rings = rings.map(|(it, truth)| (Some(&*it.name), truth, it.retainer.restitution));
+        rings.collect()
     };
     html! {
         @for (name, truth, restitution) in rings {
@@ -36,7 +34,16 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
                 (impulses(window, &truth.impacts))
                 @match press.and_then(|press| meeting(first, restitution, press)) {
                     Some(meeting) => { (pulse(first, &meeting)) },
-                    None => { (no_force(first, press.is_some())) },
+                    None => {
+                        p.note {
+                            "The first impact: " (si(first.normal_impulse, "N s")) " at " (ms(first.state.time)) "\u{a0}ms. "
+                            @if press.is_some() {
+                                "No force over time is drawn: this impact has no rebound to find its damping from."
+                            } @else {
+                                "No force over time: a rigid contact has none, and the scene has no table [materials] to find it from."
+                            }
+                        }
+                    },
                 }
             } @else {
                 p { "No impact." }
@@ -45,21 +52,8 @@ pub fn force(window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
     }
 }
 
-fn no_force(first: &Impact, materials: bool) -> Markup {
-    html! {
-        p.note {
-            "The first impact: " (si(first.normal_impulse, "N s")) " at " (ms(first.state.time)) "\u{a0}ms. "
-            @if materials {
-                "No force over time is drawn: this impact has no rebound to find its damping from."
-            } @else {
-                "No force over time: a rigid contact has none, and the scene has no table [materials] to find it from."
-            }
-        }
-    }
-}
-
 fn impulses(window: Window, impacts: &[Impact]) -> Markup {
-    let (x, factor) = window.axis(6.0);
+    let x = window.axis();
     let milli = |impact: &Impact| impact.normal_impulse * 1e3;
     let highest = impacts.iter().map(milli).fold(0.0, f64::max);
     let y = Axis::new(0.0, 1.1 * highest, "normal impulse, mN s", 4.0);
@@ -72,10 +66,9 @@ fn impulses(window: Window, impacts: &[Impact]) -> Markup {
     };
     let front = html! {
         @for impact in impacts {
-            @let (at, top) = (impact.state.time * factor, milli(impact));
-            @if x.shows(at) {
-                line.hit x1=(percent(x.fraction(at))) x2=(percent(x.fraction(at)))
-                    y1=(HEIGHT) y2=(HEIGHT * (1.0 - y.fraction(top))) {}
+            @let (at, top) = (x.percent(impact.state.time), milli(impact));
+            @if x.shows(impact.state.time) {
+                line.hit x1=(at) x2=(at) y1=(HEIGHT) y2=(HEIGHT * (1.0 - y.fraction(top))) {}
             }
         }
     };
@@ -100,13 +93,11 @@ fn pulse(first: &Impact, meeting: &Meeting) -> Markup {
     let history = meeting.history();
     let peak = history.iter().map(|it| it.1).fold(0.0, f64::max);
     let duration = history.last().map_or(0.0, |it| it.0);
-    let x = Axis::new(0.0, 1.05e6 * duration, "\u{b5}s after the touch", 6.0);
-    let y = Axis::new(0.0, 1.1 * peak, "normal force, N", 4.0);
     let chart = Chart {
         title: "Force of the first impact",
         description: "Normal force over time, from touch to release, of a compliant contact of the scene's materials.",
-        x: &x,
-        y: &y,
+        x: &Axis::new(0.0, 1.05e6 * duration, "\u{b5}s after the touch", 6.0),
+        y: &Axis::new(0.0, 1.1 * peak, "normal force, N", 4.0),
         height: HEIGHT,
     };
     let curve = chart.curve("motion", history.iter().map(|it| (it.0 * 1e6, it.1)));

@@ -2,22 +2,17 @@
 //! cursor and a zoom to the charts.
 
 mod accuracy;
-mod controller;
 mod displacement;
-mod energy;
 pub mod force;
-mod foresight;
-mod health;
+pub(crate) mod monitor;
 mod moving;
 pub mod orbit;
 mod parameters;
 mod phase_plane;
 pub mod regions;
-mod severity;
 pub(crate) mod spectrum;
-mod stretch;
 pub mod tables;
-mod timeline;
+pub(crate) mod timeline;
 mod verdict;
 pub mod window;
 
@@ -27,7 +22,6 @@ mod fixture;
 mod tests;
 
 use maud::{Markup, html};
-use spectrum::Spectra;
 use touchdown_chart::shell::page;
 use touchdown_run::matching::match_events;
 use touchdown_run::outcome::Outcome;
@@ -42,7 +36,11 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
     let whole = Window::whole(truth);
     let window = Window::interesting(truth, scene.retainer.clearance, scene.run.gravity);
     let zoomed = window != whole;
-    let (ring_moves, _) = moving::ring_moves(outcome);
+    let ring_moves = moving::ring_moves(outcome);
+    let parts = [
+        ("levitated", "before it", [f64::NEG_INFINITY, 0.0]),
+        ("motion", "after the release", [0.0, whole.end]),
+    ];
     let body = html! {
         (verdict::verdict(scene, outcome, &matches))
         section {
@@ -92,17 +90,17 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
         }
         section {
             h2 { "Full spectrum" }
-            (spectra(whole, scene, outcome))
+            (spectrum::spectra(&outcome.spectrogram, scene.rotor.spin, &parts, "time since release, s"))
         }
         section { h2 { "Detector" } (tables::events(outcome, &matches)) }
-        section { h2 { "Controller" } (controller::controller(&outcome.conduct, Timebase::of(scene))) }
-        section { h2 { "Forecast of whirl" } (foresight::forecasts(outcome)) }
+        section { h2 { "Controller" } (monitor::controller(&outcome.conduct, Timebase::of(scene))) }
+        section { h2 { "Forecast of whirl" } (monitor::forecasts(outcome)) }
         section { h2 { "Impacts" } (tables::impacts(scene, outcome, &matches)) }
-        section { h2 { "Severity" } (severity::severity(outcome)) }
-        section { h2 { "Sensors" } (health::health(outcome)) }
+        section { h2 { "Severity" } (monitor::severity(outcome)) }
+        section { h2 { "Sensors" } (monitor::sensors(outcome)) }
         section { h2 { "Accuracy of the model" } (accuracy::accuracy(scene, outcome)) }
         @if let Some(ledger) = &outcome.model.ledger {
-            section { h2 { "Energy" } (energy::energy(ledger)) }
+            section { h2 { "Energy" } (accuracy::energy(ledger)) }
         }
         section { h2 { "Parameters" } (parameters::parameters(scene)) }
         section { h2 { "Not modelled" } (parameters::limits(scene, outcome.model.histories.whole.has_forces())) }
@@ -112,30 +110,18 @@ pub fn render(scene: &Scene, outcome: &Outcome) -> String {
     page(&title, &body).into_string()
 }
 
-fn spectra(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
-    spectrum::spectra(&Spectra {
-        found: &outcome.spectrogram,
-        spin: scene.rotor.spin,
-        parts: vec![
-            ("levitated", "before it", [f64::NEG_INFINITY, 0.0]),
-            ("motion", "after the release", [0.0, whole.end]),
-        ],
-        time: "time since release, s",
-    })
-}
-
 /// Ends, ring and inner ring, where they are there.
 fn parts_that_move(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
-    let (ring, race) = moving::ring_moves(outcome);
+    let bearing = scene.ball_bearing.filter(|_| moving::race_turns(outcome));
     html! {
         @if !scene.rings().is_empty() { (moving::ends(scene, outcome)) }
-        @if ring {
+        @if moving::ring_moves(outcome) {
             section {
                 h2 { "Retainer ring" }
                 (moving::ring(whole, outcome))
             }
         }
-        @if let (true, Some(bearing)) = (race, &scene.ball_bearing) {
+        @if let Some(bearing) = bearing {
             section {
                 h2 { "Ball bearing" }
                 (moving::speeds(bearing.race.cage_ratio, whole, outcome))

@@ -1,6 +1,6 @@
 //! What moves besides the rotor's centre: its ends, the retainer ring, the inner ring.
 
-use super::orbit::{Orbit, draw};
+use super::orbit::draw;
 use super::window::Window;
 use maud::{Markup, html};
 use std::f64::consts::TAU;
@@ -30,20 +30,14 @@ pub fn ends(scene: &Scene, outcome: &Outcome) -> Markup {
 }
 
 fn end(index: usize, ring: &Ring, truth: &History, scene: &Scene, outcome: &Outcome) -> Markup {
-    let in_ring = |point: &TracePoint| {
-        let Moving::Ends(ends) = point.moving else {
-            return None;
-        };
-        Some(at(point, ends[index], phase_at(truth, point.state.time)))
+    let in_ring = |point: &TracePoint| match point.moving {
+        Moving::Ends(ends) => Some(at(point, ends[index], phase_at(truth, point.state.time))),
+        _ => None,
     };
     let trace: Vec<_> = outcome.trace.iter().filter_map(in_ring).collect();
-    draw(&Orbit {
-        title: &format!("Orbit in ring {}", ring.name),
-        clearance: ring.retainer.clearance,
-        spin: scene.rotor.spin,
-        trace: &trace,
-        hits: truth.impacts.iter().map(|it| it.state.position).collect(),
-    })
+    let title = format!("Orbit in ring {}", ring.name);
+    let (clearance, spin) = (ring.retainer.clearance, scene.rotor.spin);
+    draw(&title, clearance, spin, &trace, &truth.impacts)
 }
 
 /// The same moment at another place of the rotor.
@@ -71,74 +65,56 @@ pub fn in_ring(scene: &Scene, outcome: &Outcome) -> Markup {
         _ => *point,
     };
     let trace: Vec<_> = outcome.trace.iter().map(relative).collect();
-    draw(&Orbit {
-        title: "Orbit in the retainer ring",
-        clearance: scene.retainer.clearance,
-        spin: scene.rotor.spin,
-        trace: &trace,
-        hits: Vec::new(),
-    })
+    let (clearance, spin) = (scene.retainer.clearance, scene.rotor.spin);
+    draw("Orbit in the retainer ring", clearance, spin, &trace, &[])
 }
 
-/// Whether the retainer ring moves in the trace; whether its inner ring turns.
-pub fn ring_moves(outcome: &Outcome) -> (bool, bool) {
-    let mut moves = (false, false);
-    for point in &outcome.trace {
-        if let Moving::Ring {
-            position,
-            race_spin,
-            ..
-        } = point.moving
-        {
-            moves.0 |= position != [0.0; 2];
-            moves.1 |= race_spin != 0.0;
-        }
-    }
-    moves
+/// Whether the retainer ring moves in the trace.
+pub fn ring_moves(outcome: &Outcome) -> bool {
+    let moves = |it: &TracePoint| match it.moving {
+        Moving::Ring { position, .. } => position != [0.0; 2],
+        _ => false,
+    };
+    outcome.trace.iter().any(moves)
+}
+
+/// Whether its inner ring turns.
+pub fn race_turns(outcome: &Outcome) -> bool {
+    let turns = |it: &TracePoint| match it.moving {
+        Moving::Ring { race_spin, .. } => race_spin != 0.0,
+        _ => false,
+    };
+    outcome.trace.iter().any(turns)
 }
 
 /// Displacement of the ring against time.
 pub fn ring(window: Window, outcome: &Outcome) -> Markup {
-    let curves = |point: &TracePoint| match point.moving {
+    let names = [("x (right)", "motion"), ("y (up)", "pulse")];
+    let title = "Displacement of the retainer ring";
+    let axis = [title, "\u{b5}m from its rest place"];
+    lines(axis, names, window, outcome, |point| match point.moving {
         Moving::Ring { position, .. } => position.map(|x| x * MICRO),
         _ => [0.0; 2],
-    };
-    lines(
-        "Displacement of the retainer ring",
-        "\u{b5}m from its rest place",
-        [("x (right)", "motion"), ("y (up)", "pulse")],
-        window,
-        outcome,
-        curves,
-    )
+    })
 }
 
 /// Speeds of inner ring, cage and rotor against time; `cage` is the speed of the cage over the inner ring's.
 pub fn speeds(cage: f64, window: Window, outcome: &Outcome) -> Markup {
     let rpm = 60.0 / TAU;
-    let curves = |point: &TracePoint| match point.moving {
+    let [rotor, race] = [("rotor", "motion"), ("inner ring", "pulse")];
+    let names = [rotor, race, ("cage", "limit")];
+    let title = "Speed of rotor, inner ring and cage";
+    let axis = [title, "1/min, counter-clockwise"];
+    lines(axis, names, window, outcome, |point| match point.moving {
         Moving::Ring { race_spin, .. } => {
             [point.state.spin, race_spin, cage * race_spin].map(|speed| speed * rpm)
         }
         _ => [0.0; 3],
-    };
-    lines(
-        "Speed of rotor, inner ring and cage",
-        "1/min, counter-clockwise",
-        [
-            ("rotor", "motion"),
-            ("inner ring", "pulse"),
-            ("cage", "limit"),
-        ],
-        window,
-        outcome,
-        curves,
-    )
+    })
 }
 
 fn lines<const N: usize>(
-    title: &str,
-    unit: &str,
+    [title, unit]: [&str; 2],
     names: [(&str, &str); N],
     window: Window,
     outcome: &Outcome,
@@ -150,16 +126,14 @@ fn lines<const N: usize>(
     let all = || values.iter().flat_map(|(_, values)| values).copied();
     let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
     let margin = 0.06 * (high - low);
-    let (x, factor) = window.axis(6.0);
-    let y = Axis::new(low - margin, high + margin, unit, 5.0);
     let chart = Chart {
         title,
         description: "Of the reference, over time.",
-        x: &x,
-        y: &y,
+        x: &window.axis(),
+        y: &Axis::new(low - margin, high + margin, unit, 5.0),
         height: HEIGHT,
     };
-    let points = |index: usize| values.iter().map(move |it| (it.0 * factor, it.1[index]));
+    let points = |index: usize| values.iter().map(move |it| (it.0, it.1[index]));
     let curves = html! {
         @for (index, (_, class)) in names.iter().enumerate() { (chart.curve(class, points(index))) }
     };

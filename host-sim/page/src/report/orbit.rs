@@ -1,10 +1,10 @@
 //! The path of the rotor's centre inside the clearance circle.
 
-use super::stretch::{far, runs};
+use super::window::{far, runs};
 use maud::{Markup, html};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
-use touchdown_base::history::PhaseKind;
+use touchdown_base::history::{Impact, PhaseKind};
 use touchdown_chart::plot::{Axis, coordinate};
 use touchdown_chart::text::significant;
 use touchdown_run::outcome::{Outcome, TracePoint};
@@ -15,44 +15,30 @@ const RADIUS: f64 = 180.0;
 /// Of the clearance: half the width of the drawn circle.
 const AT_WALL: f64 = 0.02;
 
-/// A path in a gap.
-pub struct Orbit<'a> {
-    /// Its heading.
-    pub title: &'a str,
-    /// Of the gap, m.
-    pub clearance: f64,
-    /// rad/s.
-    pub spin: f64,
-    /// In the gap.
-    pub trace: &'a [TracePoint],
-    /// Where impacts were, m.
-    pub hits: Vec<[f64; 2]>,
-}
-
 /// Draws the rotor's whole run; clearance in m, spin in rad/s.
 pub fn orbit(clearance: f64, spin: f64, outcome: &Outcome) -> Markup {
     // A rotor that tilts hits with its ends.
     let own = outcome.truth.rings.is_empty();
-    let impacts = outcome.truth.whole.impacts.iter().filter(|_| own);
-    draw(&Orbit {
-        title: "Orbit",
-        clearance,
-        spin,
-        trace: &outcome.trace,
-        hits: impacts.map(|impact| impact.state.position).collect(),
-    })
+    let impacts = &outcome.truth.whole.impacts[..];
+    let hits = if own { impacts } else { &[] };
+    draw("Orbit", clearance, spin, &outcome.trace, hits)
 }
 
-/// Draws a path with equal axes.
-pub fn draw(orbit: &Orbit) -> Markup {
-    let (clearance, spin) = (orbit.clearance, orbit.spin);
+/// Draws a path with equal axes in a gap, m, and where impacts were; spin in rad/s.
+pub fn draw(
+    title: &str,
+    clearance: f64,
+    spin: f64,
+    trace: &[TracePoint],
+    impacts: &[Impact],
+) -> Markup {
     let scale = RADIUS / clearance;
     let micro = 1.25 * clearance * 1e6;
     let axis = Axis::new(-micro, micro, "\u{b5}m", 6.0);
     let place = |value: f64| coordinate(value * 1e-6 * scale);
     html! {
         svg.orbit role="img" viewBox="-252 -226 488 472" {
-            title { (orbit.title) }
+            title { (title) }
             desc {
                 "Path of the rotor's centre with equal axes, coloured by phase, inside the clearance "
                 "circle; rings mark impacts, the outer arrow the direction of spin."
@@ -65,10 +51,10 @@ pub fn draw(orbit: &Orbit) -> Markup {
             }
             text.unit x="0" y="238" text-anchor="middle" { "x (right) and y (up), \u{b5}m" }
             circle.clearance r=(RADIUS) {}
-            @for run in runs(orbit.trace) {
+            @for run in runs(trace) {
                 path class={ "curve " (<&str>::from(run[run.len() - 1].phase)) } d=(path(run, clearance, scale)) {}
             }
-            @for (x, y) in hits(&orbit.hits, scale) {
+            @for (x, y) in hits(impacts, scale) {
                 circle.hit cx=(coordinate(x)) cy=(coordinate(y)) r="3.5" {}
             }
             (spin_arrow(spin))
@@ -76,8 +62,8 @@ pub fn draw(orbit: &Orbit) -> Markup {
     }
 }
 
-fn place(point: &TracePoint, scale: f64) -> (f64, f64) {
-    let [x, y] = point.state.position;
+/// In drawing units.
+fn place([x, y]: [f64; 2], scale: f64) -> (f64, f64) {
     (x * scale, -y * scale)
 }
 
@@ -86,7 +72,7 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
     let mut path = String::new();
     let mut last: Option<((f64, f64), &TracePoint)> = None;
     for point in run {
-        let to = place(point, scale);
+        let to = place(point.state.position, scale);
         if !(to.0.is_finite() && to.1.is_finite()) {
             continue;
         }
@@ -102,9 +88,7 @@ fn path(run: &[TracePoint], clearance: f64, scale: f64) -> String {
                 let (large, sweep) = (u8::from(turn.abs() > PI), u8::from(turn < 0.0));
                 write!(path, "A{RADIUS} {RADIUS} 0 {large} {sweep} {x} {y}")
             }
-            Some((_, from)) if far(from, point, clearance) => {
-                write!(path, "M{x} {y}h0")
-            }
+            Some((_, from)) if far(from, point, clearance) => write!(path, "M{x} {y}h0"),
             Some(_) => write!(path, "L{x} {y}"),
         };
         last = Some((to, point));
@@ -138,14 +122,11 @@ fn turn(from: &TracePoint, to: &TracePoint) -> f64 {
 }
 
 /// In drawing units, those that fall on others left out.
-fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
+fn hits(impacts: &[Impact], scale: f64) -> Vec<(f64, f64)> {
     let mut drawn: Vec<(f64, f64)> = Vec::new();
-    for [x, y] in places {
-        let at = (x * scale, -y * scale);
-        if drawn
-            .iter()
-            .all(|it| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5)
-        {
+    for at in impacts.iter().map(|it| place(it.state.position, scale)) {
+        let apart = |it: &(f64, f64)| f64::hypot(it.0 - at.0, it.1 - at.1) > 1.5;
+        if drawn.iter().all(apart) {
             drawn.push(at);
         }
     }
@@ -154,19 +135,21 @@ fn hits(places: &[[f64; 2]], scale: f64) -> Vec<(f64, f64)> {
 
 fn spin_arrow(spin: f64) -> Markup {
     let rpm = significant(spin.abs() * 30.0 / PI, 5);
-    let (path, turn) = match spin.total_cmp(&0.0) {
-        _ if spin == 0.0 => ("", "no spin".to_owned()),
-        std::cmp::Ordering::Greater => (
+    let (path, turn) = match spin {
+        0.0 => ("", ""),
+        0.0.. => (
             "M194 -70A206 206 0 0 0 150 -141M150 -141l1 12M150 -141l11 5",
-            format!("spin {rpm} rpm \u{21ba}"),
+            "\u{21ba}",
         ),
         _ => (
             "M150 -141A206 206 0 0 1 194 -70M194 -70l1 -12M194 -70l-10 -7",
-            format!("spin {rpm} rpm \u{21bb}"),
+            "\u{21bb}",
         ),
     };
     html! {
         path.arrow d=(path) {}
-        text.label x="232" y="-196" text-anchor="end" { (turn) }
+        text.label x="232" y="-196" text-anchor="end" {
+            @if spin == 0.0 { "no spin" } @else { "spin " (rpm) " rpm " (turn) }
+        }
     }
 }

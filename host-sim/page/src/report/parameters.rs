@@ -12,9 +12,9 @@ use touchdown_scene::{Removable, Scene};
 pub fn parameters(scene: &Scene) -> Markup {
     let machine = &scene.machine();
     let rpm = significant(scene.rotor.spin * 30.0 / PI, 6);
-    let turn = match scene.rotor.spin.total_cmp(&0.0) {
-        _ if scene.rotor.spin == 0.0 => "",
-        std::cmp::Ordering::Greater => ", counter-clockwise",
+    let turn = match scene.rotor.spin {
+        0.0 => "",
+        0.0.. => ", counter-clockwise",
         _ => ", clockwise",
     };
     let inertia = significant(machine.polar_inertia, 5);

@@ -1,7 +1,7 @@
 //! Angular speed against angle while the rotor is at the wall.
 
-use super::regions::{View, areas};
-use super::stretch::{far, runs};
+use super::regions::areas;
+use super::window::{far, runs};
 use maud::{Markup, html};
 use touchdown_base::history::RotorState;
 use touchdown_base::regions::Plane;
@@ -23,17 +23,15 @@ const HEIGHT: f64 = 330.0;
 /// Draws theta-dot against theta, theta from the bottom, counter-clockwise; of a fast whirl also its
 /// beginning.
 pub fn phase_plane(scene: &Scene, outcome: &Outcome) -> Markup {
-    let motion = outcome
-        .trace
-        .iter()
-        .filter_map(|point| at_wall(&point.state, scene));
-    let (widest, low, high) = motion.fold((0.0, 0.0, 0.0), |(widest, low, high), (angle, rate)| {
-        (
-            f64::max(widest, angle.abs()),
-            f64::min(low, rate),
-            f64::max(high, rate),
-        )
-    });
+    let motion = || {
+        outcome
+            .trace
+            .iter()
+            .filter_map(|it| at_wall(&it.state, scene))
+    };
+    let widest = motion().map(|it| it.0.abs()).fold(0.0, f64::max);
+    let low = motion().map(|it| it.1).fold(0.0, f64::min);
+    let high = motion().map(|it| it.1).fold(0.0, f64::max);
     if low == high {
         return html! { p.note { "The rotor did not move along the wall." } };
     }
@@ -41,25 +39,22 @@ pub fn phase_plane(scene: &Scene, outcome: &Outcome) -> Markup {
     let beginning = slow > 0.0 && high.max(-low) > 3.0 * slow;
     html! {
         @if beginning {
-            (plane("Phase plane, slow part", widest, low.max(-slow), high.min(slow), scene, outcome))
+            (plane("Phase plane, slow part", widest, [low.max(-slow), high.min(slow)], scene, outcome))
         }
-        (plane("Phase plane", widest, low, high, scene, outcome))
+        (plane("Phase plane", widest, [low, high], scene, outcome))
     }
 }
 
 fn plane(
     title: &str,
     widest: f64,
-    low: f64,
-    high: f64,
+    [low, high]: [f64; 2],
     scene: &Scene,
     outcome: &Outcome,
 ) -> Markup {
-    let fast = high.max(-low) > 1e4;
-    let (factor, unit) = if fast {
-        (1e-3, "krad/s")
-    } else {
-        (1.0, "rad/s")
+    let (scale, unit) = match high.max(-low) > 1e4 {
+        true => (1e-3, "krad/s"),
+        false => (1.0, "rad/s"),
     };
     let spans = [(30.0, 10.0), (90.0, 30.0), (180.0, 45.0)];
     let fitting = spans.into_iter().find(|span| 1.1 * widest < span.0);
@@ -67,22 +62,21 @@ fn plane(
     let mut x = Axis::new(-reach, reach, "\u{3b8} from the bottom, degrees", 8.0);
     x.step = step;
     let margin = 0.06 * (high - low);
-    let (low, high) = ((low - margin) * factor, (high + margin) * factor);
-    let y = Axis::new(low, high, &format!("d\u{3b8}/dt, {unit}"), 6.0);
+    let unit = format!("d\u{3b8}/dt, {unit}");
     let chart = Chart {
         title,
         description: "Angular speed against angle from the bottom while the rotor is at the wall, \
                       coloured by phase; inside a dashed curve the wall cannot hold the rotor.",
         x: &x,
-        y: &y,
+        y: &Axis::scaled(scale, low - margin, high + margin, &unit, 6.0),
         height: HEIGHT,
     };
     let curves = html! {
         @if let Some(plane) = fast_plane(scene).filter(|_| reach > 90.0) {
-            (areas(View { plane: &plane, side: -scene.rotor.spin.signum(), factor }, &chart))
+            (areas(&plane, -scene.rotor.spin.signum(), &chart))
         }
-        @if reach > 90.0 { (contact_limit(scene, chart.pen(), factor)) }
-        @for run in runs(&outcome.trace) { (curve(run, scene, chart.pen(), factor)) }
+        @if reach > 90.0 { (contact_limit(scene, chart.pen())) }
+        @for run in runs(&outcome.trace) { (curve(run, scene, chart.pen())) }
     };
     chart.draw(&html! {}, &curves, &html! {})
 }
@@ -101,17 +95,12 @@ fn fast_plane(scene: &Scene) -> Option<Plane> {
 fn at_wall(state: &RotorState, scene: &Scene) -> Option<(f64, f64)> {
     let ([x, y], [vx, vy]) = (state.position, state.velocity);
     let radius = f64::hypot(x, y);
-    let near = radius > NEAR * scene.retainer.clearance;
-    near.then(|| {
-        (
-            x.atan2(-y).to_degrees(),
-            (x * vy - y * vx) / (radius * radius),
-        )
-    })
+    let (angle, rate) = (x.atan2(-y), (x * vy - y * vx) / (radius * radius));
+    (radius > NEAR * scene.retainer.clearance).then_some((angle.to_degrees(), rate))
 }
 
 /// Where the angle wraps, the curve runs out at one side and in at the other.
-fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Markup {
+fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>) -> Markup {
     let mut last: Option<(f64, f64, &TracePoint)> = None;
     for point in run {
         let Some((angle, rate)) = at_wall(&point.state, scene) else {
@@ -119,7 +108,6 @@ fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Ma
             last = None;
             continue;
         };
-        let rate = rate * factor;
         match last {
             Some((_, _, from)) if far(from, point, scene.retainer.clearance) => {
                 pen.dot(angle, rate)
@@ -139,7 +127,7 @@ fn curve(run: &[TracePoint], scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Ma
 }
 
 /// Where the wall's force vanishes: `theta-dot^2 = -(g/clearance) cos theta`.
-fn contact_limit(scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Markup {
+fn contact_limit(scene: &Scene, mut pen: Pen<'_>) -> Markup {
     let pressing = scene.run.gravity / scene.retainer.clearance;
     for side in [-1.0, 1.0] {
         for half in [90..=180, -180..=-90] {
@@ -147,7 +135,7 @@ fn contact_limit(scene: &Scene, mut pen: Pen<'_>, factor: f64) -> Markup {
             for degrees in half {
                 let angle = f64::from(degrees);
                 let square = (-pressing * angle.to_radians().cos()).max(0.0);
-                pen.line_to(angle, side * square.sqrt() * factor);
+                pen.line_to(angle, side * square.sqrt());
             }
         }
     }

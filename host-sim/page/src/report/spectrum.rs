@@ -1,6 +1,7 @@
 //! Full spectra of the sensed motion, and how they change over time.
 
 use maud::{Markup, html};
+use std::f64::consts::TAU;
 use touchdown_base::spectrogram::Spectrogram;
 use touchdown_chart::plot::{Axis, Chart, Pen, key};
 
@@ -13,39 +14,32 @@ const SHADES: usize = 8;
 const SHADE_DB: f64 = 6.0;
 const MICRO: f64 = 1e6;
 
-/// What is drawn.
-pub struct Spectra<'a> {
-    /// Of x + j y.
-    pub found: &'a Spectrogram,
-    /// Of the rotor, counter-clockwise positive, rad/s.
-    pub spin: f64,
-    /// A curve each: class, name, and the stretch of time that it is the mean of, s.
-    pub parts: Vec<(&'static str, &'static str, [f64; 2])>,
-    /// Name of the time axis, in s.
-    pub time: &'static str,
-}
+/// A curve: class, name, and the stretch of time that it is the mean of, s.
+type MeanSpectrum = (&'static str, &'static str, [f64; 2]);
 
-/// Full spectrum and waterfall.
-pub fn spectra(shown: &Spectra<'_>) -> Markup {
+/// Full spectrum and waterfall of x + j y. The rotor's spin is counter-clockwise positive, rad/s; `time` names the time
+/// axis, in s.
+pub fn spectra(found: &Spectrogram, spin: f64, parts: &[MeanSpectrum], time: &str) -> Markup {
+    let bins = found.spectra.first().map_or(0, |it| it.power.len());
+    let reach = (TURNS * spin.abs() / TAU).max(LEAST);
+    let reach = reach.min(found.frequency(bins.max(1) - 1));
     html! {
-        (full(shown))
+        (full(found, spin, parts, reach))
         h3 { "Waterfall" }
-        (waterfall(shown))
+        (waterfall(found, time, reach))
         p.note { "Of what the sensors of plane a give, x + j y, without its mean; Hann windows. Each shade of the waterfall is 6 dB." }
     }
 }
 
 /// Amplitude against frequency.
-fn full(shown: &Spectra<'_>) -> Markup {
-    let found = shown.found;
-    let curves: Vec<(&str, &str, Vec<f64>)> = (shown.parts.iter())
+fn full(found: &Spectrogram, spin: f64, parts: &[MeanSpectrum], reach: f64) -> Markup {
+    let curves: Vec<(&str, &str, Vec<f64>)> = (parts.iter())
         .filter_map(|(class, name, span)| Some((*class, *name, found.amplitudes(*span)?)))
         .collect();
     let Some(most) = (curves.iter().flat_map(|it| it.2.iter().copied())).reduce(f64::max) else {
         return html! { p { "The run is shorter than a window of the spectrum." } };
     };
-    let reach = reach(shown);
-    let x = Axis::new(-reach, reach, "frequency, Hz (+: counter-clockwise)", 8.0);
+    let x = frequencies(reach);
     let most = (MICRO * most).max(1e-2);
     let y = Axis::decades(1e-4 * most, most, "amplitude, \u{b5}m", 5.0);
     let chart = Chart {
@@ -65,7 +59,7 @@ fn full(shown: &Spectra<'_>) -> Markup {
     let drawn = html! {
         @for (class, _, amplitudes) in &curves { (chart.curve(class, points(amplitudes))) }
     };
-    let spin = shown.spin / std::f64::consts::TAU;
+    let spin = spin / TAU;
     let front = html! {
         @for at in [spin, -spin].into_iter().filter(|it| x.shows(*it)) {
             line.mark x1=(x.percent(at)) x2=(x.percent(at)) y1="0" y2=(HEIGHT) {}
@@ -80,37 +74,28 @@ fn full(shown: &Spectra<'_>) -> Markup {
     }
 }
 
-fn reach(shown: &Spectra<'_>) -> f64 {
-    let found = shown.found;
-    let bins = found.spectra.first().map_or(0, |it| it.power.len());
-    let turns = TURNS * shown.spin.abs() / std::f64::consts::TAU;
-    turns.max(LEAST).min(found.frequency(bins.max(1) - 1))
+fn frequencies(reach: f64) -> Axis {
+    Axis::new(-reach, reach, "frequency, Hz (+: counter-clockwise)", 8.0)
 }
 
 /// The spectra one over the other, later ones higher, as shades.
-fn waterfall(spectra: &Spectra<'_>) -> Markup {
-    let found = spectra.found;
+fn waterfall(found: &Spectrogram, time: &str, reach: f64) -> Markup {
     let [Some(first), Some(last)] = [found.spectra.first(), found.spectra.last()] else {
         return html! {};
     };
-    let reach = reach(spectra);
     let middle = |span: [f64; 2]| 0.5 * (span[0] + span[1]);
-    let x = Axis::new(-reach, reach, "frequency, Hz (+: counter-clockwise)", 8.0);
-    let y = Axis::new(first.span[0], last.span[1], spectra.time, 6.0);
     let chart = Chart {
         title: "Waterfall of the full spectrum",
         description: "Amplitude of the sensed motion as shades over frequency and time; the darkest \
                       is within 6 dB of the greatest.",
-        x: &x,
-        y: &y,
+        x: &frequencies(reach),
+        y: &Axis::new(first.span[0], last.span[1], time, 6.0),
         height: HEIGHT,
     };
     let shown = |index: usize| found.frequency(index).abs() <= reach;
     let bins: Vec<usize> = (0..first.power.len()).filter(|it| shown(*it)).collect();
-    let powers = found
-        .spectra
-        .iter()
-        .flat_map(|it| bins.iter().map(|bin| it.power[*bin]));
+    let spectra = found.spectra.iter();
+    let powers = spectra.flat_map(|it| bins.iter().map(|bin| it.power[*bin]));
     let most = powers.fold(f64::MIN_POSITIVE, f64::max);
     let half = 0.5 * found.resolution;
     let mut shades: Vec<Pen> = (0..SHADES).map(|_| chart.pen()).collect();

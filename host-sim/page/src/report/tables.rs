@@ -1,9 +1,9 @@
 //! The detector's events and the impacts, as tables.
 
 use maud::{Markup, html};
-use touchdown_base::history::Impact;
+use touchdown_base::history::{Impact, Pulse};
 use touchdown_chart::table::{OPEN, table};
-use touchdown_chart::text::{column, error, ms, ms_or_dash, si};
+use touchdown_chart::text::{column, error, ms, or_dash, si};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches};
 use touchdown_run::outcome::{DetectedEvent, Outcome};
@@ -15,11 +15,8 @@ const DESIGN_JUMP: f64 = 18e-3;
 /// All events of the detector and what became of the true ones.
 pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
     let detection = &outcome.detection;
-    let missed = matches
-        .events
-        .iter()
-        .filter(|it| it.detected.is_none() && it.kind != EventKind::Impact);
-    let missed: Vec<&Match> = missed.collect();
+    let missed = |it: &&Match| it.detected.is_none() && it.kind != EventKind::Impact;
+    let missed: Vec<&Match> = matches.events.iter().filter(missed).collect();
     let all = detection.events.iter().enumerate();
     let (hits, changes): (Vec<_>, Vec<_>) = all.partition(|it| it.1.event == EventKind::Impact);
     html! {
@@ -48,20 +45,18 @@ pub fn events(outcome: &Outcome, matches: &Matches) -> Markup {
 /// Of events with their numbers.
 fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> Markup {
     let truth = |index: usize| matches.of_detected(index);
+    let late = |index| or_dash(truth(index).and_then(|it| it.latency_s), ms);
+    let off = |index| or_dash(truth(index).and_then(|it| it.onset_error_s), ms);
     table(name, events)
-        .words("Event", |(_, it)| match it.normal_speed_m_s {
-            Some(speed) => format!("{}, {}", <&str>::from(it.event), si(speed, "m/s")),
-            None => <&str>::from(it.event).to_owned(),
+        .words("Event", |(_, it)| {
+            let speed = it.normal_speed_m_s.map(|it| format!(", {}", si(it, "m/s")));
+            <&str>::from(it.event).to_owned() + &speed.unwrap_or_default()
         })
         .number("Onset\nms", |it| ms(it.1.onset_s))
         .number("Declared\nms", |it| ms(it.1.declared_s))
-        .number("Confirmed\nms", |it| ms_or_dash(it.1.confirmed_s))
-        .number("Latency\nms", |it| {
-            ms_or_dash(truth(it.0).and_then(|it| it.latency_s))
-        })
-        .number("Onset error\nms", |it| {
-            ms_or_dash(truth(it.0).and_then(|it| it.onset_error_s))
-        })
+        .number("Confirmed\nms", |it| or_dash(it.1.confirmed_s, ms))
+        .number("Latency\nms", |it| late(it.0))
+        .number("Onset error\nms", |it| off(it.0))
         .words("Plane", |it| it.1.plane)
         .marked("Against the truth", |(index, it)| {
             let (class, judgement) = match truth(*index) {
@@ -69,9 +64,7 @@ fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> 
                 Some(_) => ("", "true"),
                 None => ("", "not judged"),
             };
-            let withdrawn = it
-                .withdrawn_s
-                .map(|time| format!(", withdrawn at {}\u{a0}ms", ms(time)));
+            let withdrawn = (it.withdrawn_s).map(|it| format!(", withdrawn at {}\u{a0}ms", ms(it)));
             (class, judgement.to_owned() + &withdrawn.unwrap_or_default())
         })
         .draw()
@@ -80,29 +73,29 @@ fn listed(name: &str, events: &[(usize, &DetectedEvent)], matches: &Matches) -> 
 /// The true impacts, whether they were detected, and the model's error at each.
 pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     let truth = &outcome.truth.whole.impacts;
+    let model = &outcome.model.histories.whole;
     if truth.is_empty() {
         return html! { p { "None." } };
     }
     let found: Vec<&Match> = matches.of_kind(EventKind::Impact).collect();
-    let hard = |impact: &Impact| impact.normal_impulse / scene.rotor.mass >= DESIGN_JUMP;
-    let hard: Vec<bool> = truth.iter().map(hard).collect();
+    let is_hard = |it: &Impact| it.normal_impulse / scene.rotor.mass >= DESIGN_JUMP;
+    let hard = || truth.iter().zip(&found).filter(|it| is_hard(it.0));
+    let hard_found = hard().filter(|(_, it)| it.detected.is_some()).count();
     let detected = found.iter().filter(|it| it.detected.is_some()).count();
-    let hard_found = found
-        .iter()
-        .zip(&hard)
-        .filter(|(it, hard)| **hard && it.detected.is_some());
-    let forces = outcome.model.histories.whole.has_forces();
-    let rows: Vec<Row<'_>> = (truth.iter().enumerate().zip(&found))
-        .map(|((index, truth), found)| {
-            let model = outcome.model.histories.whole.impacts.get(index);
-            (index, truth, model, model_errors(outcome, index), *found)
-        })
-        .collect();
+    let forces = model.has_forces();
+    let row = |((index, truth), &found): ((usize, _), &_)| Row {
+        index,
+        truth,
+        pulse: model.impacts.get(index).and_then(|it| it.pulse),
+        errors: model_errors(outcome, index),
+        found,
+    };
+    let rows: Vec<_> = truth.iter().enumerate().zip(&found).map(row).collect();
     html! {
         p {
-            (truth.len()) " impacts, " (detected) " detected. Of the " (hard.iter().filter(|it| **it).count())
+            (truth.len()) " impacts, " (detected) " detected. Of the " (hard().count())
             " whose velocity jump reaches " (si(DESIGN_JUMP, "m/s"))
-            ", from which detection is the design target, " (hard_found.count()) " were detected."
+            ", from which detection is the design target, " (hard_found) " were detected."
         }
         (impact_table(&rows, forces))
         p.note {
@@ -129,44 +122,35 @@ fn model_errors(outcome: &Outcome, index: usize) -> Option<[f64; 2]> {
     ])
 }
 
-/// Index, as the sensors saw it, by the model, the model's errors, as detected.
-type Row<'a> = (
-    usize,
-    &'a Impact,
-    Option<&'a Impact>,
-    Option<[f64; 2]>,
-    &'a Match,
-);
+/// An impact: as the sensors saw it, the model's pulse and errors, as detected.
+struct Row<'a> {
+    index: usize,
+    truth: &'a Impact,
+    pulse: Option<Pulse>,
+    errors: Option<[f64; 2]>,
+    found: &'a Match,
+}
 
 fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
-    let text =
-        |value: Option<f64>, show: fn(f64) -> String| value.map_or("\u{2013}".to_owned(), show);
-    let pulse = |it: &Row| it.2.and_then(|it| it.pulse);
+    let milli = |value: f64| column(value * 1e3);
+    let found = |it: &Match| ["no", "yes"][usize::from(it.detected.is_some())];
+    let off = |it: &Row, k: usize| or_dash(it.errors.map(|it| it[k]), error);
+    let pulse = |it: &Row, of: fn(Pulse) -> f64| or_dash(it.pulse.map(of), column);
     let table = table("Impacts", rows)
-        .number("Index", |it| it.0)
-        .number("Time\nms", |it| ms(it.1.state.time))
-        .number("Normal speed\nmm/s", |it| column(it.1.normal_speed * 1e3))
-        .number("Impulse\nmN\u{a0}s", |it| column(it.1.normal_impulse * 1e3))
-        .words("Detected", |it| {
-            if it.4.detected.is_some() { "yes" } else { "no" }
-        })
-        .number("Latency\nms", |it| ms_or_dash(it.4.latency_s))
-        .number("Onset error\nms", |it| ms_or_dash(it.4.onset_error_s))
-        .number("Model: time error\ns", |it| {
-            text(it.3.map(|it| it[0]), error)
-        })
-        .number("Model: speed error\nrelative", |it| {
-            text(it.3.map(|it| it[1]), error)
-        });
+        .number("Index", |it| it.index)
+        .number("Time\nms", |it| ms(it.truth.state.time))
+        .number("Normal speed\nmm/s", |it| milli(it.truth.normal_speed))
+        .number("Impulse\nmN\u{a0}s", |it| milli(it.truth.normal_impulse))
+        .words("Detected", |it| found(it.found))
+        .number("Latency\nms", |it| or_dash(it.found.latency_s, ms))
+        .number("Onset error\nms", |it| or_dash(it.found.onset_error_s, ms))
+        .number("Model: time error\ns", |it| off(it, 0))
+        .number("Model: speed error\nrelative", |it| off(it, 1));
     if !forces {
         return table.draw();
     }
     table
-        .number("Peak force\nN", |it| {
-            text(pulse(it).map(|it| it.peak_force), column)
-        })
-        .number("Contact\nms", |it| {
-            text(pulse(it).map(|it| it.duration * 1e3), column)
-        })
+        .number("Peak force\nN", |it| pulse(it, |it| it.peak_force))
+        .number("Contact\nms", |it| pulse(it, |it| it.duration * 1e3))
         .draw()
 }

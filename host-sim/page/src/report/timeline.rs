@@ -4,7 +4,7 @@ use super::window::Window;
 use maud::{Markup, html};
 use strum::VariantArray;
 use touchdown_base::history::{History, Phase, PhaseKind};
-use touchdown_chart::plot::{Axis, columns, key};
+use touchdown_chart::plot::{Axis, columns, key, percent};
 use touchdown_core::event::EventKind;
 use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
 use touchdown_scene::Scene;
@@ -18,12 +18,15 @@ const LANES: usize = 5;
 /// Width of the smallest plot area that labels must fit into, px.
 const NARROW: f64 = 330.0;
 
+/// Part of the width from which labels stand left of their lines.
+const LEFT_FROM: f64 = 0.6;
+
 /// Advance of a label's letter, px.
 const LETTER: f64 = 6.4;
 
 /// Draws the strip for a stretch of time.
 pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -> Markup {
-    let (x, factor) = window.axis(6.0);
+    let x = window.axis();
     let events = &outcome.detection.events;
     let seen_row = |name: &str, time: fn(&DetectedEvent) -> f64| {
         let phases = detected_phases(&outcome.detection, window.end, time);
@@ -42,7 +45,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
     rows.push(seen_row("Detector, by estimated onset", |it| it.onset_s));
     let declared = seen_row("Detector, as declared at the time", |it| it.declared_s);
     rows.push(declared);
-    let (labels, lanes) = labels(events, &x, factor);
+    let (labels, lanes) = labels(events, &x);
     let bars = rows.len() as f64 * ROW;
     let height = bars + lanes as f64 * LANE + 8.0;
     html! {
@@ -57,7 +60,7 @@ pub fn timeline(title: &str, window: Window, scene: &Scene, outcome: &Outcome) -
                 @for (number, (name, phases, hits)) in rows.iter().enumerate() {
                     @let top = number as f64 * ROW + 20.0;
                     text.row x="0" y=(top - 6.0) { (name) }
-                    (bar(phases, hits, &x, factor, top))
+                    (bar(phases, hits, &x, top))
                 }
                 @for label in &labels { (label.line(bars)) }
                 @for label in &labels { (label.text(bars)) }
@@ -75,10 +78,10 @@ pub fn legend() -> Markup {
     }
 }
 
-fn bar(phases: &[Phase], hits: &[f64], x: &Axis, factor: f64, top: f64) -> Markup {
+fn bar(phases: &[Phase], hits: &[f64], x: &Axis, top: f64) -> Markup {
     html! {
         rect.void x="0" y=(top) width="100%" height=(BAR) {}
-        @for (phase, from, to) in visible(phases, x, factor) {
+        @for (phase, from, to) in visible(phases, x) {
             rect class={ "bar " (<&str>::from(phase)) }
                 x=(percent(from)) width=(percent(to - from)) y=(top) height=(BAR) {}
             @if (to - from) * NARROW > phase_name(phase).len() as f64 * LETTER + 4.0 {
@@ -86,20 +89,20 @@ fn bar(phases: &[Phase], hits: &[f64], x: &Axis, factor: f64, top: f64) -> Marku
                     y=(top + BAR - 7.5) text-anchor="middle" { (phase_name(phase)) }
             }
         }
-        @for at in strokes(hits, x, factor) {
+        @for at in strokes(hits, x) {
             line.hit x1=(at) x2=(at) y1=(top) y2=(top + 6.0) {}
         }
     }
 }
 
 /// Phases on the axis with their ends as fractions of it; of phases too short to be seen, as many as fit.
-pub fn visible(phases: &[Phase], x: &Axis, factor: f64) -> Vec<(PhaseKind, f64, f64)> {
+pub fn visible(phases: &[Phase], x: &Axis) -> Vec<(PhaseKind, f64, f64)> {
     const NARROWEST: f64 = 5e-4;
     let mut shown: Vec<(PhaseKind, f64, f64)> = Vec::new();
     for phase in phases {
         let drawn = shown.last().map_or(0.0, |last| last.2);
-        let from = x.fraction(phase.start_s * factor).max(drawn);
-        let to = x.fraction(phase.end_s * factor).min(1.0);
+        let from = x.fraction(phase.start_s).max(drawn);
+        let to = x.fraction(phase.end_s).min(1.0);
         if to > drawn && from < 1.0 {
             shown.push((phase.phase, from, to.max(from + NARROWEST)));
         }
@@ -107,22 +110,20 @@ pub fn visible(phases: &[Phase], x: &Axis, factor: f64) -> Vec<(PhaseKind, f64, 
     shown
 }
 
-/// Positions of the visible times, without those that fall on the one before.
-pub fn strokes(times: &[f64], x: &Axis, factor: f64) -> Vec<String> {
-    let shown = times
-        .iter()
-        .map(|time| time * factor)
-        .filter(|&it| x.shows(it));
-    let mut places: Vec<String> = shown
-        .map(|time| format!("{:.1}%", 100.0 * x.fraction(time)))
-        .collect();
-    places.dedup();
-    places
+/// Estimated onsets of the declared impacts, or of all other events, s.
+pub fn onsets(detection: &Detection, impacts: bool) -> Vec<f64> {
+    let events = detection.events.iter();
+    let wanted = events.filter(|it| (it.event == EventKind::Impact) == impacts);
+    wanted.map(|it| it.onset_s).collect()
 }
 
-/// A fraction of the width.
-pub fn percent(fraction: f64) -> String {
-    format!("{:.2}%", 100.0 * fraction)
+/// Positions of the visible times, without those that fall on the one before.
+pub fn strokes(times: &[f64], x: &Axis) -> Vec<String> {
+    let shown = times.iter().filter(|time| x.shows(**time));
+    let places = shown.map(|time| format!("{:.1}%", 100.0 * x.fraction(*time)));
+    let mut places: Vec<String> = places.collect();
+    places.dedup();
+    places
 }
 
 /// The detector's view as phases, each event taking effect at the time that `time` gives.
@@ -141,21 +142,14 @@ fn detected_phases(detection: &Detection, end: f64, time: fn(&DetectedEvent) -> 
         changes.extend(event.withdrawn_s.map(|at| (at, PhaseKind::Levitated)));
     }
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut phases: Vec<Phase> = Vec::new();
-    for (start_s, phase) in changes {
-        if let Some(last) = phases.last_mut() {
-            if last.phase == phase {
-                continue;
-            }
-            last.end_s = start_s;
-        }
-        phases.push(Phase {
-            phase,
-            start_s,
-            end_s: end.max(start_s),
-        });
-    }
-    phases
+    changes.dedup_by_key(|it| it.1);
+    let ends = changes.iter().skip(1).map(|it| Some(it.0)).chain([None]);
+    let phase = |(&(start_s, phase), next): (&_, Option<f64>)| Phase {
+        phase,
+        start_s,
+        end_s: next.unwrap_or(end.max(start_s)),
+    };
+    changes.iter().zip(ends).map(phase).collect()
 }
 
 /// A declared event, drawn below the bars.
@@ -176,10 +170,9 @@ impl Label {
     }
 
     fn text(&self, bars: f64) -> Markup {
-        let (anchor, dx) = if self.at > 0.6 {
-            ("end", "-5")
-        } else {
-            ("start", "5")
+        let (anchor, dx) = match self.at > LEFT_FROM {
+            true => ("end", "-5"),
+            false => ("start", "5"),
         };
         html! {
             text.label x=(percent(self.at)) y=(self.foot(bars)) dx=(dx) text-anchor=(anchor) { (self.text) }
@@ -189,22 +182,18 @@ impl Label {
     /// Left and right end as fractions of the narrowest chart.
     fn extent(&self) -> (f64, f64) {
         let width = (self.text.chars().count() as f64 * LETTER + 10.0) / NARROW;
-        if self.at > 0.6 {
-            (self.at - width, self.at)
-        } else {
-            (self.at, self.at + width)
+        match self.at > LEFT_FROM {
+            true => (self.at - width, self.at),
+            false => (self.at, self.at + width),
         }
     }
 }
 
 /// Labels of the declared events other than impacts, in lanes so that none covers another; what finds
 /// no lane is left to the table.
-fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize) {
+fn labels(events: &[DetectedEvent], x: &Axis) -> (Vec<Label>, usize) {
     let mut labels: Vec<Label> = Vec::new();
-    for event in events
-        .iter()
-        .filter(|event| event.event != EventKind::Impact)
-    {
+    for event in events.iter().filter(|it| it.event != EventKind::Impact) {
         let name = <&str>::from(event.event);
         let fates = [
             (Some(event.declared_s), name.to_owned()),
@@ -212,7 +201,7 @@ fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize
             (event.withdrawn_s, format!("{name} withdrawn")),
         ];
         for (time, text) in fates {
-            let Some(time) = time.map(|time| time * factor).filter(|&it| x.shows(it)) else {
+            let Some(time) = time.filter(|time| x.shows(*time)) else {
                 continue;
             };
             let mut label = Label {
@@ -221,15 +210,8 @@ fn labels(events: &[DetectedEvent], x: &Axis, factor: f64) -> (Vec<Label>, usize
                 text,
             };
             let (from, to) = label.extent();
-            let free = |lane: &usize| {
-                labels
-                    .iter()
-                    .filter(|other| other.lane == *lane)
-                    .all(|other| {
-                        let (start, end) = other.extent();
-                        to < start || from > end
-                    })
-            };
+            let apart = |it: &Label| to < it.extent().0 || from > it.extent().1;
+            let free = |lane: &usize| labels.iter().all(|it| it.lane != *lane || apart(it));
             if let Some(lane) = (0..LANES).find(free) {
                 label.lane = lane;
                 labels.push(label);

@@ -1,9 +1,10 @@
 //! The head of the page: what happened, in a line and a few figures.
 
-use maud::{Markup, html};
+use super::accuracy::peak;
+use maud::{Markup, Render, html};
 use std::f64::consts::TAU;
 use touchdown_base::history::{History, PhaseKind, Regime};
-use touchdown_chart::text::{ms, si, significant};
+use touchdown_chart::text::{ms, or_dash, si, significant};
 use touchdown_core::event::EventKind;
 use touchdown_run::matching::{Match, Matches, regime_event};
 use touchdown_run::outcome::Outcome;
@@ -14,18 +15,17 @@ use touchdown_scene::names::regime_name;
 pub fn verdict(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     let truth = &outcome.truth.whole;
     let contact = first_contact(truth);
-    let whirls = matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl);
     html! {
         header {
             p.kind { "Touchdown report" }
             h1 { (scene.heading()) }
             p.note { (scene.source.as_ref().unwrap_or(&scene.name)) }
-            p class=(if whirls { "verdict alarm" } else { "verdict" }) {
+            p class=(if whirls(truth) { "verdict alarm" } else { "verdict" }) {
                 (motion(truth)) " " (detection(outcome, matches))
             }
             dl.figures {
-                (figure("Regime at the end", regime_name(truth.regime), &whirl(truth)))
-                (figure("Peak impact speed", &peak(truth), &impact_count(truth)))
+                (figure("Regime at the end", regime_name(truth.regime), whirl(truth)))
+                (figure("Peak impact speed", &or_dash(peak(truth), |it| si(it, "m/s")), impact_count(truth)))
                 (figure("First contact", &contact.0, contact.1))
                 (fall_figure(outcome, matches))
                 (regime_figure(outcome, matches))
@@ -34,93 +34,69 @@ pub fn verdict(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     }
 }
 
-fn figure(name: &str, value: &str, note: &str) -> Markup {
+/// Whether it does at the end of the run.
+pub fn whirls(truth: &History) -> bool {
+    matches!(truth.regime, Regime::ForwardWhirl | Regime::BackwardWhirl)
+}
+
+fn figure(name: &str, value: &str, note: impl Render) -> Markup {
     html! { div { dt { (name) } dd { (value) } dd.note { (note) } } }
 }
 
-fn motion(truth: &History) -> String {
-    let end = si(truth.end.time, "s");
-    let (what, when) = match truth.regime {
-        Regime::ForwardWhirl => ("The rotor whirls round the retainer with its spin", "after"),
-        Regime::BackwardWhirl => (
-            "The rotor is driven into backward whirl round the retainer",
-            "within",
-        ),
-        Regime::Pendulum => (
-            "No whirl at the end: the rotor swings at the bottom of the retainer",
-            "after",
-        ),
-        Regime::Rest => (
-            "No whirl at the end: the rotor lies still on the retainer",
-            "after",
-        ),
-        Regime::Intermittent => {
-            let times = truth.lift_offs.len();
-            return format!(
-                "No whirl at the end: the rotor keeps lifting off and falling back, {times} times in {end}."
-            );
+fn motion(truth: &History) -> Markup {
+    html! {
+        @match truth.regime {
+            Regime::ForwardWhirl => { "The rotor whirls round the retainer with its spin after " },
+            Regime::BackwardWhirl => { "The rotor is driven into backward whirl round the retainer within " },
+            Regime::Pendulum => { "No whirl at the end: the rotor swings at the bottom of the retainer after " },
+            Regime::Rest => { "No whirl at the end: the rotor lies still on the retainer after " },
+            Regime::Intermittent => {
+                "No whirl at the end: the rotor keeps lifting off and falling back, " (truth.lift_offs.len()) " times in "
+            },
+            Regime::Bouncing => { "The rotor is not in permanent contact after " },
         }
-        Regime::Bouncing => ("The rotor is not in permanent contact", "after"),
-    };
-    format!("{what} {when} {end}.")
+        (si(truth.end.time, "s")) "."
+    }
 }
 
-fn detection(outcome: &Outcome, matches: &Matches) -> String {
-    let falls = matches.of_kind(EventKind::FreeFall).next();
+fn detection(outcome: &Outcome, matches: &Matches) -> Markup {
+    let fall = matches.of_kind(EventKind::FreeFall).next();
     let first = outcome.truth.whole.impacts.first().map(|it| it.state.time);
-    let mut text = match falls.map(|fall| fall.latency_s) {
-        None => String::new(),
-        Some(None) => "The detector missed the free fall.".to_owned(),
-        Some(Some(latency)) => {
-            let side = first.map_or(String::new(), |first| {
-                let side = if latency < first { "before" } else { "after" };
-                let apart = si((first - latency).abs(), "s");
-                format!(", {apart} {side} the first contact")
-            });
-            let latency = si(latency, "s");
-            format!("The detector declared the free fall {latency} after the release{side}.")
+    let whirls = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
+    html! {
+        @match fall.map(|fall| fall.latency_s) {
+            None => {},
+            Some(None) => { "The detector missed the free fall." },
+            Some(Some(latency)) => {
+                "The detector declared the free fall " (si(latency, "s")) " after the release"
+                @if let Some(first) = first {
+                    ", " (si((first - latency).abs(), "s")) " " (if latency < first { "before" } else { "after" }) " the first contact"
+                }
+                "."
+            },
         }
-    };
-    let whirl = [EventKind::ForwardWhirl, EventKind::BackwardWhirl];
-    for regime in whirl
-        .iter()
-        .filter_map(|&kind| matches.of_kind(kind).next())
-    {
-        match regime.latency_s {
-            Some(latency) => {
-                let latency = si(latency, "s");
-                text.push_str(&format!(
-                    " The detector named the whirl {latency} after that contact began."
-                ));
-            }
-            None => text.push_str(" The detector did not name the whirl."),
+        @for whirl in whirls.map(|it| matches.of_kind(it).next()).into_iter().flatten() {
+            @if let Some(latency) = whirl.latency_s {
+                " The detector named the whirl " (si(latency, "s")) " after that contact began."
+            } @else { " The detector did not name the whirl." }
         }
-    }
-    match matches.false_events.len() {
-        0 => {}
-        1 => text.push_str(" One of the detector's events is false."),
-        count => text.push_str(&format!(" {count} of the detector's events are false.")),
-    }
-    text
-}
-
-fn whirl(truth: &History) -> String {
-    match truth.regime {
-        Regime::ForwardWhirl | Regime::BackwardWhirl => {
-            let ([x, y], [vx, vy]) = (truth.end.position, truth.end.velocity);
-            let rate = (x * vy - y * vx).abs() / (TAU * (x * x + y * y));
-            format!(
-                "{} turns in this contact, at the end {} (on a rigid support an upper bound)",
-                significant(truth.end.turns_in_contact.abs(), 3),
-                si(rate, "Hz")
-            )
+        @match matches.false_events.len() {
+            0 => {},
+            1 => { " One of the detector's events is false." },
+            count => { " " (count) " of the detector's events are false." },
         }
-        _ => "no whirl at the end of the run".to_owned(),
     }
 }
 
-fn peak(truth: &History) -> String {
-    super::accuracy::peak(truth).map_or("\u{2013}".to_owned(), |speed| si(speed, "m/s"))
+fn whirl(truth: &History) -> Markup {
+    let ([x, y], [vx, vy]) = (truth.end.position, truth.end.velocity);
+    let rate = (x * vy - y * vx).abs() / (TAU * (x * x + y * y));
+    html! {
+        @if whirls(truth) {
+            (significant(truth.end.turns_in_contact.abs(), 3)) " turns in this contact, at the end " (si(rate, "Hz"))
+            " (on a rigid support an upper bound)"
+        } @else { "no whirl at the end of the run" }
+    }
 }
 
 fn impact_count(truth: &History) -> String {
@@ -143,8 +119,8 @@ fn first_contact(truth: &History) -> (String, &'static str) {
 
 fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
     let fall = matches.of_kind(EventKind::FreeFall).next();
-    let levitated =
-        outcome.truth.whole.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
+    let first = outcome.truth.whole.phases.first();
+    let levitated = first.is_some_and(|it| it.phase == PhaseKind::Levitated);
     let note = match fall.and_then(|fall| fall.detected) {
         None if levitated => "never declared".to_owned(),
         None => "no release in this run".to_owned(),
@@ -153,7 +129,7 @@ fn fall_figure(outcome: &Outcome, matches: &Matches) -> Markup {
             None => "declared, never confirmed".to_owned(),
         },
     };
-    figure("Free fall: latency", &latency(fall), &note)
+    figure("Free fall: latency", &latency(fall), note)
 }
 
 fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
@@ -169,7 +145,5 @@ fn regime_figure(outcome: &Outcome, matches: &Matches) -> Markup {
 
 fn latency(found: Option<&Match>) -> String {
     let latency = found.and_then(|found| found.latency_s);
-    latency.map_or("\u{2013}".to_owned(), |time| {
-        format!("{}\u{a0}ms", ms(time))
-    })
+    or_dash(latency, |time| format!("{}\u{a0}ms", ms(time)))
 }

@@ -1,11 +1,15 @@
-//! The stretch of time that a chart shows; a trace should have all its points in the interesting one.
+//! Stretches of a run: what a chart shows, where a trace should have all its points; what can be drawn in one go.
 
 use touchdown_base::history::{History, PhaseKind};
 use touchdown_chart::plot::Axis;
+use touchdown_run::outcome::TracePoint;
 
 /// Longest default stretch, in natural times `sqrt(clearance/g)`: bounce series up to a restitution of
 /// 0.95 fit.
 const LONGEST: f64 = 100.0;
+
+/// Way between two points from which they are not joined, in clearances.
+const FAR: f64 = 0.7;
 
 /// A stretch of time, s since release.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,33 +45,41 @@ impl Window {
             return whole;
         };
         let natural = (clearance / gravity).sqrt();
-        let longest = if natural.is_finite() {
-            LONGEST * natural
-        } else {
-            f64::INFINITY
-        };
-        let length = (1.3 * settled).min(longest);
+        // Infinite without gravity; `min` leaves out what is no number.
+        let length = (1.3 * settled).min(LONGEST * natural);
         let lead = truth.phases.first().map(|first| first.phase) == Some(PhaseKind::Levitated);
         let start = if lead { -0.08 * length } else { 0.0 };
         let window = Self {
             start: start.max(whole.start),
             end: length.min(whole.end),
         };
-        if whole.end - whole.start < 1.5 * (window.end - window.start) {
-            whole
-        } else {
-            window
-        }
+        let is_most = whole.end - whole.start < 1.5 * (window.end - window.start);
+        if is_most { whole } else { window }
     }
 
-    /// Its time axis and the factor from seconds to the axis' unit.
-    pub fn axis(self, ticks: f64) -> (Axis, f64) {
-        let (factor, label) = if self.end - self.start > 2.0 {
-            (1.0, "time since release, s")
-        } else {
-            (1e3, "time since release, ms")
+    /// Its time axis, for s.
+    pub fn axis(self) -> Axis {
+        let (scale, label) = match self.end - self.start > 2.0 {
+            true => (1.0, "time since release, s"),
+            false => (1e3, "time since release, ms"),
         };
-        let axis = Axis::new(self.start * factor, self.end * factor, label, ticks);
-        (axis, factor)
+        Axis::scaled(scale, self.start, self.end, label, 6.0)
     }
+}
+
+/// The stretches of one phase, each from the last point of the one before.
+pub fn runs(trace: &[TracePoint]) -> impl Iterator<Item = &[TracePoint]> {
+    let mut end = 0;
+    trace.chunk_by(|a, b| a.phase == b.phase).map(move |run| {
+        let start = end;
+        end += run.len();
+        &trace[usize::saturating_sub(start, 1)..end]
+    })
+}
+
+/// Whether the rotor may have gone elsewhere between two points, so that a line would mislead.
+pub fn far(from: &TracePoint, to: &TracePoint, clearance: f64) -> bool {
+    let speed = |point: &TracePoint| f64::hypot(point.state.velocity[0], point.state.velocity[1]);
+    let time = to.state.time - from.state.time;
+    speed(from).max(speed(to)) * time > FAR * clearance
 }
