@@ -9,7 +9,7 @@ use anyhow::{Context, ensure};
 
 use super::cycles::{Player, WorstTick};
 use super::stream::{self, Chance, FILE, Stream};
-use crate::firmware::{self, Extra};
+use crate::firmware;
 use crate::toolchain::output;
 use crate::workspace;
 
@@ -26,7 +26,7 @@ type Found = (WorstTick, Stream);
 /// worst ones to the corpus.
 pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
     println!("Search: building");
-    firmware::build_one("touchdown-count-tick", Extra::None)?;
+    firmware::build_one("touchdown-count-tick", &[])?;
     let player = Player::new(&firmware::images().join("touchdown-count-tick"))?;
     let mut chance = Chance(seed);
     let rounds = count.div_ceil(2 * EMULATORS * PLAYED);

@@ -12,29 +12,19 @@ use crate::files;
 /// Of the sources' folders, what is none of them.
 const LEFT_OUT: [&str; 2] = ["target", ".git"];
 
-/// The copy.
-pub struct Tree {
-    pub folder: PathBuf,
+/// Makes `folder` a copy of the sources of `workspace` as they are. What is the same already is left, so that it is not
+/// built again.
+pub fn copy(workspace: &Path, folder: &Path) -> anyhow::Result<()> {
+    mirror(workspace, folder)
+        .with_context(|| format!("cannot copy the sources to {}", folder.display()))
 }
 
-impl Tree {
-    /// In `folder`, with the sources of `workspace` as they are. What is the same already is left, so that it is not
-    /// built again.
-    pub fn copy(workspace: &Path, folder: &Path) -> anyhow::Result<Self> {
-        mirror(workspace, folder)
-            .with_context(|| format!("cannot copy the sources to {}", folder.display()))?;
-        Ok(Self {
-            folder: folder.to_owned(),
-        })
-    }
-
-    /// With `fault` in it, until what is returned is dropped.
-    pub fn plant(&self, fault: &Fault) -> anyhow::Result<Planted> {
-        let file = self.folder.join(&fault.file);
-        let clean = files::text(&file)?;
-        fs::write(&file, fault.planted(&clean)?)?;
-        Ok(Planted { file, clean })
-    }
+/// Plants `fault` in the copy in `folder`, until what is returned is dropped.
+pub fn plant(fault: &Fault, folder: &Path) -> anyhow::Result<Planted> {
+    let file = folder.join(&fault.file);
+    let clean = files::text(&file)?;
+    fs::write(&file, fault.planted(&clean)?)?;
+    Ok(Planted { file, clean })
 }
 
 /// A file with a fault in it.
@@ -84,6 +74,7 @@ fn mirror(from: &Path, to: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::faults::list::tests::fault;
 
     #[test]
     fn a_copy_is_mended_and_loses_what_is_gone() {
@@ -93,24 +84,20 @@ mod tests {
         fs::create_dir_all(from.join("target")).unwrap();
         fs::write(from.join("src/a.rs"), "a + b").unwrap();
         fs::write(from.join("src/b.rs"), "").unwrap();
-        let tree = Tree::copy(&from, &to).unwrap();
+        copy(&from, &to).unwrap();
         let fault = Fault {
-            name: "sign".into(),
-            area: String::new(),
             file: "src/a.rs".into(),
-            old: "+".into(),
             new: "-".into(),
-            test: None,
-            equivalent: None,
+            ..fault("sign", "+")
         };
         let read = || fs::read_to_string(to.join("src/a.rs")).unwrap();
-        let planted = tree.plant(&fault).unwrap();
+        let planted = plant(&fault, &to).unwrap();
         assert_eq!(read(), "a - b");
         drop(planted);
         assert_eq!(read(), "a + b");
         fs::write(to.join("src/a.rs"), "a - b").unwrap();
         fs::remove_file(from.join("src/b.rs")).unwrap();
-        Tree::copy(&from, &to).unwrap();
+        copy(&from, &to).unwrap();
         assert_eq!(read(), "a + b");
         assert!(!to.join("src/b.rs").exists() && !to.join("target").exists());
         fs::remove_dir_all(folder).unwrap();
