@@ -46,9 +46,10 @@ fn at(plan: &Plan, part: &[Point], others: usize) -> String {
 }
 
 fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
-    let places: Vec<f64> = values.iter().filter_map(as_number).collect();
-    let low = places.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let places = values.iter().filter_map(as_number);
+    let mut order: Vec<_> = places.zip(points).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [low, high] = [order.first(), order.last()].map(|it| it.map_or(0.0, |it| it.0));
     let x = Axis::new(low, high, key, 8.0);
     let y = Axis::new(
         0.0,
@@ -65,8 +66,6 @@ fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
         height: HEIGHT,
     };
     let values = |it: &Point| [it.whirl_low, it.whirl_high, it.whirl_probability];
-    let mut order: Vec<_> = places.into_iter().zip(points).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let curves = html! {
         @for (which, class) in ["limit", "limit", "impact"].into_iter().enumerate() {
             (chart.curve(class, order.iter().map(|it| (it.0, 100.0 * values(it.1)[which]))))

@@ -169,14 +169,8 @@ pub struct WorstTick {
 
 impl fmt::Display for WorstTick {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            instructions,
-            modelled,
-        } = self;
-        write!(
-            f,
-            "{modelled} cycles as modelled, {instructions} instructions"
-        )
+        write!(f, "{} cycles as modelled", self.modelled)?;
+        write!(f, ", {} instructions", self.instructions)
     }
 }
 
@@ -220,14 +214,11 @@ impl Player {
         let (table, windows) = self.play(name, described)?;
         let streams = streams(&table, &windows)?;
         let modelled = |it: &PlayedStream| worst(it.ticks.iter().map(|it| it.cycles)).modelled;
-        let worst = table
-            .streams()
-            .zip(&streams)
-            .map(|((name, ..), stream)| WorstTick {
-                instructions: table.worst_in(name).unwrap_or(0),
-                modelled: modelled(stream),
-            });
-        Ok(worst.collect())
+        let worst = |((name, ..), stream): ((&str, _, _), _)| WorstTick {
+            instructions: table.worst_in(name).unwrap_or(0),
+            modelled: modelled(stream),
+        };
+        Ok(table.streams().zip(&streams).map(worst).collect())
     }
 }
 
@@ -258,14 +249,14 @@ pub fn count(image: &Path, corpus: &[Stream]) -> anyhow::Result<(Table, Modelled
 }
 
 fn window(bytes: &[u8; WINDOW_BYTES]) -> CountedWindow {
-    let (words, _) = bytes.as_chunks();
-    let number = |k: usize| u64::from(u32::from_le_bytes(words[k]));
+    let number = |k: usize| u64::from(u32::from_le_bytes(bytes.as_chunks().0[k]));
+    let [instructions, lower, modelled, upper] = [0, 1, 2, 3].map(number);
     CountedWindow {
-        instructions: number(0),
+        instructions,
         cycles: Cycles {
-            lower: number(1),
-            modelled: number(2),
-            upper: number(3),
+            lower,
+            modelled,
+            upper,
         },
     }
 }
@@ -398,11 +389,7 @@ pub fn table(it: &Modelled) -> String {
         ("worst", it.worst),
         ("on top at worst", it.top_priority_worst),
     ] {
-        let Cycles {
-            lower,
-            modelled,
-            upper,
-        } = cycles;
+        let [lower, modelled, upper] = [cycles.lower, cycles.modelled, cycles.upper];
         let _ = writeln!(text, "    {name:24} {lower:7} {modelled:8} {upper:7}");
     }
     if let Some(worst) = it.corpus_instructions_worst {

@@ -8,7 +8,7 @@ use addr2line::gimli::{EndianSlice, LittleEndian, Reader};
 use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-use super::calls::{self, Function, Graph, Region};
+use super::calls::{self, Function, Graph};
 use crate::files;
 
 /// Names of what a panic needs.
@@ -134,15 +134,12 @@ fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
         Some(section) => frames(section.data()?)?,
         None => BTreeMap::new(),
     };
-    let mut regions = vec![];
+    let mut is_code = BTreeMap::new();
     let mut functions = vec![];
     for symbol in file.symbols() {
         let (name, address) = (symbol.name()?, symbol.address());
         if name.starts_with("$t") || name.starts_with("$d") {
-            regions.push(Region {
-                address,
-                is_code: name.starts_with("$t"),
-            });
+            is_code.insert(address, name.starts_with("$t"));
         } else if symbol.kind() == SymbolKind::Text && symbol.size() > 0 {
             let address = address & !1;
             functions.push(Function {
@@ -153,7 +150,7 @@ fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
             });
         }
     }
-    Ok(Graph::new(text.address(), code, &mut regions, functions))
+    Ok(Graph::new(text.address(), code, &is_code, functions))
 }
 
 /// Address and frame of each function: an address of four bytes, then a ULEB128.

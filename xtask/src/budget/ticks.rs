@@ -52,15 +52,8 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
 /// Runs the counting image in a folder, with a plugin of the emulator if given: its file and arguments.
 pub fn count_in(folder: &Path, image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
     let status = Command::new("qemu-system-arm")
-        .args([
-            "-M",
-            "netduinoplus2",
-            "-display",
-            "none",
-            "-monitor",
-            "none",
-        ])
-        .args(["-serial", "none"])
+        .args(["-M", "netduinoplus2", "-display", "none"])
+        .args(["-monitor", "none", "-serial", "none"])
         .args(["-semihosting-config", "enable=on,target=native"])
         .args(COUNTING)
         .args(plugin.into_iter().flat_map(|it| ["-plugin", it]))
@@ -106,14 +99,9 @@ impl Table {
     pub fn parts(&self) -> Vec<Part> {
         let typical = self.rows.iter().filter(|row| row.scene == TYPICAL);
         let names = typical.map(|row| &row.part).filter(|part| *part != WHOLE);
-        names
-            .filter_map(|part| {
-                Some(Part {
-                    part: part.clone(),
-                    instructions: self.of(part)?,
-                })
-            })
-            .collect()
+        let parts = names.filter_map(|part| self.of(part).zip(Some(part.clone())));
+        let named = parts.map(|(instructions, part)| Part { part, instructions });
+        named.collect()
     }
 
     /// Streams in the order they were played, with their ticks, and how many parts of each were counted.
