@@ -1,10 +1,10 @@
 //! A copy of the sources, for faults to be planted in: the user's own are never touched.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use walkdir::{DirEntry, WalkDir};
 
 use super::list::Fault;
 use crate::files;
@@ -40,31 +40,30 @@ impl Drop for Planted {
     }
 }
 
-fn mirror(from: &Path, to: &Path) -> io::Result<()> {
+fn mirror(from: &Path, to: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(to)?;
-    for entry in fs::read_dir(to)? {
+    for entry in WalkDir::new(to).min_depth(1).contents_first(true) {
         let entry = entry?;
-        if !from.join(entry.file_name()).exists() {
-            if entry.file_type()?.is_dir() {
-                fs::remove_dir_all(entry.path())?;
-            } else {
-                fs::remove_file(entry.path())?;
-            }
-        }
-    }
-    for entry in fs::read_dir(from)? {
-        let entry = entry?;
-        let (name, kind) = (entry.file_name(), entry.file_type()?);
-        if LEFT_OUT.iter().any(|it| name == *it) {
+        let copy = entry.path();
+        if from.join(copy.strip_prefix(to)?).exists() {
             continue;
         }
-        let (source, copy) = (entry.path(), to.join(&name));
-        if kind.is_dir() {
-            mirror(&source, &copy)?;
-        } else if kind.is_file() {
-            let bytes = fs::read(&source)?;
+        if entry.file_type().is_dir() {
+            fs::remove_dir(copy)?;
+        } else {
+            fs::remove_file(copy)?;
+        }
+    }
+    let is_source = |it: &DirEntry| LEFT_OUT.iter().all(|out| it.file_name() != *out);
+    for entry in WalkDir::new(from).into_iter().filter_entry(is_source) {
+        let entry = entry?;
+        let (source, copy) = (entry.path(), to.join(entry.path().strip_prefix(from)?));
+        if entry.file_type().is_dir() {
+            fs::create_dir_all(copy)?;
+        } else if entry.file_type().is_file() {
+            let bytes = fs::read(source)?;
             if fs::read(&copy).ok().as_ref() != Some(&bytes) {
-                fs::write(&copy, bytes)?;
+                fs::write(copy, bytes)?;
             }
         }
     }
