@@ -258,7 +258,7 @@ fn streams<'a>(
     let readings = empty.instructions + 1;
     let mut streams = vec![];
     for (row, parts) in table.streams() {
-        let (scene, ticks) = (&row.scene, row.calls as usize);
+        let (scene, ticks, counted) = (&row.scene, row.calls as usize, row.worst);
         let all = ticks * (1 + parts);
         ensure!(rest.len() >= all, "the plugin's windows end in {scene}");
         let (these, after) = rest.split_at(all);
@@ -266,9 +266,8 @@ fn streams<'a>(
         let worst = ticks.iter().map(|it| it.instructions).max();
         let worst = worst.map_or(0, |it| it.saturating_sub(readings));
         ensure!(
-            worst == row.worst,
-            "{scene}: {worst} instructions by the plugin, {} by the image",
-            row.worst
+            worst == counted,
+            "{scene}: {worst} instructions by the plugin, {counted} by the image"
         );
         streams.push(PlayedStream {
             is_typical: scene == TYPICAL,
@@ -277,11 +276,8 @@ fn streams<'a>(
         });
         rest = after;
     }
-    ensure!(
-        rest.is_empty(),
-        "the plugin saw {} windows too many",
-        rest.len()
-    );
+    let left = rest.len();
+    ensure!(left == 0, "the plugin saw {left} windows too many");
     Ok(streams)
 }
 

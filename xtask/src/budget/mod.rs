@@ -123,10 +123,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     let limits = judge::limits()?;
     print!("{}", judge::table(&budget, &limits));
     let breaches = judge::breaches(&budget, &limits);
-    ensure!(
-        breaches.is_empty(),
-        "over budget:\n  {}",
-        breaches.join("\n  ")
-    );
+    let lines = breaches.join("\n  ");
+    ensure!(breaches.is_empty(), "over budget:\n  {lines}");
     kept::require(&kept::differences(&kept::read()?, &budget)?)
 }

@@ -54,9 +54,7 @@ pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
         let head = head(&all, count, seed, at_random)?;
         let mut sorted = kept.clone();
         sorted.sort_by_key(|it| Reverse(it.0.modelled));
-        let remarked = sorted
-            .iter()
-            .map(|(worst, stream)| (stream, worst.to_string()));
+        let remarked = sorted.iter().map(|it| (&it.1, it.0.to_string()));
         fs::write(workspace().join(FILE), stream::text(&head, remarked)).context(FILE)?;
     }
     Ok(())

@@ -62,15 +62,12 @@ impl Test {
             .stderr(Stdio::piped());
         let built = cargo.output().context("cannot start cargo")?;
         let errors = String::from_utf8_lossy(&built.stderr);
-        ensure!(
-            built.status.success(),
-            "{} does not build:\n{errors}",
-            self.text
-        );
+        let text = &self.text;
+        ensure!(built.status.success(), "{text} does not build:\n{errors}");
         let messages = String::from_utf8_lossy(&built.stdout);
         let mut programs = messages.lines().filter_map(test_program);
         let (Some(program), None) = (programs.next(), programs.next()) else {
-            bail!("{}: cargo must build one test program for it", self.text);
+            bail!("{text}: cargo must build one test program for it");
         };
         Ok(program)
     }

@@ -18,15 +18,8 @@ pub fn filler(
     program: &Path,
     documents: &[Document],
 ) -> anyhow::Result<impl Fn(&str) -> anyhow::Result<String>> {
-    let [limits, paper, trade, drop] = program::printed(
-        program,
-        [
-            &["limits", "--json", "-"],
-            &["paper", "--json", "-"],
-            &["trade"],
-            &[],
-        ],
-    )?;
+    let arguments = ["limits --json -", "paper --json -", "trade", ""];
+    let [limits, paper, trade, drop] = program::printed(program, arguments)?;
     let limits: Value = serde_json::from_str(&limits).context("touchdown limits --json -")?;
     let paper: Value = serde_json::from_str(&paper).context("touchdown paper --json -")?;
     let measured: Value = serde_json::from_str(&read(budget::MEASURED)?)?;
@@ -152,10 +145,8 @@ fn stamped<'a>(
     let block_of = |it: &'a Document| Some((it, it.blocks.iter().find(|it| it.name == table)?));
     let found = documents.iter().find_map(block_of);
     let (document, block) = found.with_context(|| format!("no table is called {table}"))?;
-    ensure!(
-        block.stamped,
-        "{table} is generated: take the figure from its source"
-    );
+    let rule = "is generated: take the figure from its source";
+    ensure!(block.stamped, "{table} {rule}");
     Ok((document, block))
 }
 
