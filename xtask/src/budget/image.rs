@@ -159,7 +159,8 @@ fn frames(bytes: &[u8]) -> anyhow::Result<BTreeMap<u64, u64>> {
     let mut frames = BTreeMap::new();
     while !rest.is_empty() {
         let address = u64::from(rest.read_u32()? & !1);
-        frames.insert(address, rest.read_uleb128()?);
+        let frame = rest.read_uleb128()?;
+        frames.entry(address).or_insert(frame);
     }
     Ok(frames)
 }
