@@ -71,8 +71,11 @@ impl Record {
 /// Columns of the start, where it is drawn.
 const START: [&str; 4] = ["start_x_rel", "start_y_rel", "start_vx_m_s", "start_vy_m_s"];
 
+/// Name of a column, and what a row has there.
+pub(super) type NamedCell<R> = (&'static str, fn(&R) -> String);
+
 /// The last columns, in the order of a record's fields.
-const MEASURED: [(&str, fn(&Record) -> String); 8] = [
+const MEASURED: [NamedCell<Record>; 8] = [
     ("regime", |it| <&str>::from(it.regime).to_owned()),
     ("impacts", |it| it.impacts.to_string()),
     ("contact_start_s", |it| cell(it.contact_start)),

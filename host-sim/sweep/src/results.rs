@@ -12,7 +12,7 @@ use super::page::page;
 use super::parameter::text;
 use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
 use super::plan::{Plan, Until};
-use super::record::{Record, cell, columns};
+use super::record::{NamedCell, Record, cell, columns};
 use super::summary::{Gathered, Point, total};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, reason};
@@ -166,7 +166,7 @@ pub(super) fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_j
 }
 
 /// Columns of `points.csv` after the values.
-const MEASURED: [(&str, fn(&Point) -> String); 9] = [
+const MEASURED: [NamedCell<Point>; 9] = [
     ("drops", |it| it.drops.to_string()),
     ("whirl_probability", |it| it.whirl_probability.to_string()),
     ("whirl_low", |it| it.whirl_low.to_string()),
