@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::de::DeserializeOwned;
+use walkdir::WalkDir;
 
 /// What is in a file.
 pub fn bytes(file: &Path) -> anyhow::Result<Vec<u8>> {
@@ -23,18 +24,12 @@ pub fn toml<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
 
 /// All files with this ending in `folder` and below it, in the order of their paths.
 pub fn below(folder: &Path, ending: &str) -> anyhow::Result<Vec<PathBuf>> {
-    let (mut files, mut folders) = (vec![], vec![folder.to_owned()]);
-    while let Some(folder) = folders.pop() {
-        let entries = fs::read_dir(&folder);
-        for entry in entries.with_context(|| format!("cannot read {}", folder.display()))? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|it| it == ending) {
-                files.push(path);
-            }
+    let mut files = vec![];
+    for entry in WalkDir::new(folder).sort_by_file_name() {
+        let path = entry?.into_path();
+        if path.extension().is_some_and(|it| it == ending) && path.is_file() {
+            files.push(path);
         }
     }
-    files.sort();
     Ok(files)
 }

@@ -16,16 +16,14 @@ use crate::machine::Machine;
 use crate::toolchain::{TARGET, default_cargo, run};
 use crate::{files, workspace};
 
-/// An image: its package, name and profile.
+/// An image: its package, name, profile and features.
 struct Image {
     package: &'static str,
     name: &'static str,
     profile: &'static str,
-    /// Of cargo besides.
-    arguments: &'static [&'static str],
+    features: &'static str,
 }
 
-const FIRMWARE: &str = "touchdown-firmware";
 /// Small below the tick, fast in it.
 const PROFILE: &str = "firmware";
 /// As fast as can be: for what the model costs.
@@ -33,33 +31,32 @@ const FASTEST: &str = "release";
 
 /// All images that run.
 const IMAGES: [Image; 6] = [
+    image("touchdown-g474", "g474"),
+    image("touchdown-firmware", "f405"),
+    image("touchdown-qemu", "f405"),
+    image("touchdown-crash", "f405"),
+    image("touchdown-count-tick", "f405"),
     Image {
-        arguments: &["--features", "g474"],
-        ..image(FIRMWARE, "touchdown-g474", PROFILE)
-    },
-    image(FIRMWARE, "touchdown-firmware", PROFILE),
-    image(FIRMWARE, "touchdown-qemu", PROFILE),
-    image(FIRMWARE, "touchdown-crash", PROFILE),
-    image(FIRMWARE, "touchdown-count-tick", PROFILE),
-    Image {
-        arguments: &["--features", "image"],
-        ..image("touchdown-count", "touchdown-count", FASTEST)
+        package: "touchdown-count",
+        name: "touchdown-count",
+        profile: FASTEST,
+        features: "image",
     },
 ];
 /// The budget looks at it; without a stack, as it is never run.
-const NEVER_RUN: Image = image(FIRMWARE, "touchdown-tick", PROFILE);
+const NEVER_RUN: Image = image("touchdown-tick", "f405");
 /// The emulator's plugin that models cycles.
 const PLUGIN: &str = "touchdown-cycles";
 /// Program flash: below lies the code that the linker left out, above is RAM.
 pub const FLASH: Range<u64> = 0x0800_0000..0x0810_0000;
 const RAM_START: u64 = 0x2000_0000;
 
-const fn image(package: &'static str, name: &'static str, profile: &'static str) -> Image {
+const fn image(name: &'static str, features: &'static str) -> Image {
     Image {
-        package,
+        package: "touchdown-firmware",
         name,
-        profile,
-        arguments: &["--features", "f405"],
+        profile: PROFILE,
+        features,
     }
 }
 
@@ -93,35 +90,20 @@ pub fn build_planted() -> anyhow::Result<()> {
     let planted = images().join(PLANTED);
     fs::create_dir_all(&planted).context("cannot make a folder for images")?;
     for name in [NEVER_RUN.name, "touchdown-count-tick"] {
-        cargo(&image(FIRMWARE, name, PROFILE), &["--features", "plants"])?;
-        let built = images().join(name);
-        fs::copy(built, planted.join(name)).context("cannot copy an image")?;
+        cargo(&image(name, "f405,plants"), &[])?;
+        fs::copy(images().join(name), planted.join(name)).context("cannot copy an image")?;
     }
     Ok(())
 }
 
-/// What an image is built with besides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extra {
-    None,
-    /// A section that tells each function's stack.
-    StackSizes,
-}
+/// Of the compiler: a section that tells each function's stack.
+pub const STACK_SIZES: &[&str] = &["-Zemit-stack-sizes"];
 
-/// Builds one image, for chip or emulator.
-pub fn build_one(name: &str, extra: Extra) -> anyhow::Result<()> {
+/// Builds one image, with these flags of the compiler.
+pub fn build_one(name: &str, flags: &[&str]) -> anyhow::Result<()> {
     let mut all = IMAGES.iter().chain([&NEVER_RUN]);
     let known = all.find(|image| image.name == name);
-    let image = known.with_context(|| format!("{name} is no image"))?;
-    let mut cargo = Machine::look().toolchain.cargo("rustc");
-    cargo.args(["--quiet", "--profile", PROFILE, "--package", image.package]);
-    cargo.args(["--bin", name]).args(image.arguments);
-    if extra == Extra::StackSizes {
-        // The flag is for nightly compilers; this one is stable.
-        cargo.env("RUSTC_BOOTSTRAP", "1");
-        cargo.args(["--", "-Zemit-stack-sizes"]);
-    }
-    run(&mut cargo, &format!("{name} does not build"))
+    cargo(known.with_context(|| format!("{name} is no image"))?, flags)
 }
 
 /// Builds the emulator's plugin that models cycles, for the desktop; its file.
@@ -142,12 +124,21 @@ fn folder(profile: &str) -> PathBuf {
     target_directory().join(TARGET).join(profile)
 }
 
-fn cargo(image: &Image, arguments: &[&str]) -> anyhow::Result<()> {
-    let mut cargo = Machine::look().toolchain.cargo("build");
-    cargo.args(["--quiet", "--profile", image.profile]);
-    cargo.args(["--package", image.package, "--bin", image.name]);
-    cargo.args(image.arguments);
-    run(cargo.args(arguments), "the firmware does not build")?;
+fn cargo(image: &Image, flags: &[&str]) -> anyhow::Result<()> {
+    let mut cargo = Machine::look().toolchain.cargo();
+    cargo.args([
+        "--quiet",
+        "--profile",
+        image.profile,
+        "--package",
+        image.package,
+    ]);
+    cargo.args(["--bin", image.name, "--features", image.features]);
+    if !flags.is_empty() {
+        // They are for nightly compilers; this one is stable.
+        cargo.env("RUSTC_BOOTSTRAP", "1").arg("--").args(flags);
+    }
+    run(&mut cargo, &format!("{} does not build", image.name))?;
     image_check::write(&folder(image.profile).join(image.name))
 }
 

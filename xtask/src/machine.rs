@@ -9,13 +9,11 @@ use crate::toolchain::{TARGET, Toolchain, emulator_packages};
 /// What set-up has to know of the machine.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// The compiler for the target.
     pub toolchain: Toolchain,
     /// The default toolchain has the target's libraries.
     pub target_installed: bool,
     /// Debian packages that are needed and not there.
     pub missing_packages: Vec<&'static str>,
-    /// There is an apt-get.
     pub has_apt: bool,
     /// Packages can be installed without sudo.
     pub is_root: bool,

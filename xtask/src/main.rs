@@ -9,7 +9,6 @@ mod flash;
 mod golden;
 mod house;
 mod image_check;
-mod instructions;
 mod machine;
 mod setup;
 mod tally;
@@ -124,7 +123,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().task {
         Task::Setup { yes } => setup::run(yes),
         Task::Firmware { only } => firmware::build(only.as_deref()),
-        Task::Instructions => firmware::build(None).and_then(|()| instructions::count()),
+        Task::Instructions => firmware::build(None).and_then(|()| golden::instructions()),
         Task::Budget {
             json,
             keep,

@@ -24,39 +24,27 @@ impl Tally {
         if let Some(target) = line.strip_prefix("Running ") {
             let name = target.split(" (").next().unwrap_or(target);
             self.current = (!name.starts_with("unittests ")).then(|| name.to_owned());
-            if let Some(layer) = &self.current {
-                self.layers.insert(layer.clone(), 0);
-            }
+            self.layers.extend(self.current.clone().map(|it| (it, 0)));
         } else if let Some(rest) = line.strip_prefix("running ") {
             let count = rest.split(' ').next().and_then(|word| word.parse().ok());
-            if let (Some(layer), Some(count)) = (&self.current, count) {
-                self.layers.insert(layer.clone(), count);
-            }
+            self.layers.extend(self.current.clone().zip(count));
         } else if let Some(rest) = line.strip_prefix("test ")
             && let Some((name, result)) = rest.split_once(" ... ")
+            && let (Some(layer), Some((module, _))) = (&self.current, name.split_once("::"))
+            && result != "ignored"
         {
-            self.test(name, result);
+            self.modules.insert((layer.clone(), module.to_owned()));
         } else if let Some(rest) = line.strip_prefix("test result: ") {
             self.passed += number_before(rest, " passed");
             self.failed += number_before(rest, " failed");
         }
     }
 
-    fn test(&mut self, name: &str, result: &str) {
-        let module = name.split_once("::").map(|(module, _)| module);
-        if let (Some(layer), Some(module)) = (&self.current, module)
-            && result != "ignored"
-        {
-            self.modules.insert((layer.clone(), module.to_owned()));
-        }
-    }
-
     /// Those of `modules` (target and name) of which no test ran.
     pub fn silent(&self, modules: Vec<(String, String)>) -> Vec<String> {
         let silent = modules.into_iter().filter(|it| !self.modules.contains(it));
-        silent
-            .map(|(target, name)| format!("{target} {name}"))
-            .collect()
+        let named = silent.map(|(target, name)| format!("{target} {name}"));
+        named.collect()
     }
 
     /// Layers that ran no test.

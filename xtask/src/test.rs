@@ -1,6 +1,5 @@
 //! Runs every test on the desktop, those that need the emulator included.
 
-use std::fs;
 use std::io::{self, BufRead, BufReader};
 use std::process::{Command, ExitStatus};
 use std::thread;
@@ -8,8 +7,7 @@ use std::thread;
 use anyhow::{Context, ensure};
 
 use crate::tally::Tally;
-use crate::toolchain;
-use crate::workspace;
+use crate::{files, toolchain, workspace};
 
 /// All packages but this one: crates from elsewhere have the features that any of the chosen packages asks for, and this
 /// one is already built with those that it asks for.
@@ -82,16 +80,14 @@ pub fn cargo_test(packages: &[&str]) -> Command {
 
 /// The files of `tests/claims`: target, as cargo calls it, and module.
 fn claims() -> anyhow::Result<Vec<(String, String)>> {
+    let folder = workspace().join("tests");
     let mut claims = Vec::new();
-    for subject in fs::read_dir(workspace().join("tests/claims"))? {
-        let subject = subject?;
-        let target = format!("claims/{}/main.rs", subject.file_name().to_string_lossy());
-        for file in fs::read_dir(subject.path())? {
-            let module = file?.path().with_extension("");
-            let module = module.file_name().unwrap_or_default().to_string_lossy();
-            if module != "main" {
-                claims.push((target.clone(), module.into_owned()));
-            }
+    for file in files::below(&folder.join("claims"), "rs")? {
+        let target = file.with_file_name("main.rs");
+        if file != target {
+            let target = target.strip_prefix(&folder)?.display().to_string();
+            let module = file.file_stem().unwrap_or_default();
+            claims.push((target, module.to_string_lossy().into_owned()));
         }
     }
     Ok(claims)

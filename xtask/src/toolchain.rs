@@ -39,16 +39,14 @@ impl Toolchain {
         }
     }
 
-    /// `cargo build` or `cargo rustc` for the target, still without a package.
-    pub fn cargo(self, command: &str) -> Command {
-        match self {
-            Self::Default => {
-                let mut cargo = default_cargo();
-                cargo.args([command, "--target", TARGET]);
-                cargo
-            }
-            Self::Debian => debian_cargo(command),
-        }
+    /// `cargo rustc` for the target, still without a package.
+    pub fn cargo(self) -> Command {
+        let mut cargo = match self {
+            Self::Default => default_cargo(),
+            Self::Debian => debian_cargo(),
+        };
+        cargo.args(["rustc", "--target", TARGET]);
+        cargo
     }
 }
 
@@ -81,7 +79,7 @@ pub fn output(command: &mut Command) -> anyhow::Result<String> {
     String::from_utf8(output.stdout).with_context(|| format!("{command:?}"))
 }
 
-fn debian_cargo(command: &str) -> Command {
+fn debian_cargo() -> Command {
     let mut cargo = Command::new("/usr/bin/cargo");
     // rustup's cargo left these for its own compiler.
     for name in ["CARGO", "RUSTUP_TOOLCHAIN", "LD_LIBRARY_PATH"] {
@@ -92,7 +90,6 @@ fn debian_cargo(command: &str) -> Command {
         // -Zbuild-std is for nightly compilers; this one is stable.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld")
-        .args([command, "--target", TARGET])
         .arg("-Zbuild-std=core,compiler_builtins");
     cargo
 }

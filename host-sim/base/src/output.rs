@@ -154,10 +154,8 @@ impl Named {
 pub fn commit(outputs: Vec<Output>) -> Result<(), Failure> {
     let mut parts = Vec::new();
     for mut out in outputs {
-        let synced = (out.writer.flush()).and_then(|()| match &out.part {
-            Some(part) => part.file.sync_all(),
-            None => Ok(()),
-        });
+        let synced = (out.writer.flush())
+            .and_then(|()| (out.part.iter()).try_for_each(|part| part.file.sync_all()));
         synced.map_err(Failure::output(&out.name))?;
         parts.extend(out.part.map(|part| (out.name, part)));
     }
@@ -221,19 +219,15 @@ pub fn target(path: &Path) -> PathBuf {
             _ => break,
         }
     }
-    match (fs::canonicalize(&path), path.file_name()) {
-        (Ok(there), _) => there,
-        (Err(_), Some(name)) if !path.exists() => real_folder(folder(&path)).join(name),
-        (Err(_), _) => path,
-    }
+    real(&path)
 }
 
-/// A folder without links, as far as it is there.
-fn real_folder(path: &Path) -> PathBuf {
+/// Without links, as far as it is there.
+fn real(path: &Path) -> PathBuf {
     match (fs::canonicalize(path), path.file_name()) {
-        (Err(_), Some(name)) => real_folder(folder(path)).join(name),
-        (Err(_), None) => path.to_owned(),
         (Ok(there), _) => there,
+        (Err(_), Some(name)) if !path.exists() => real(folder(path)).join(name),
+        (Err(_), _) => path.to_owned(),
     }
 }
 

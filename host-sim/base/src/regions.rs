@@ -66,7 +66,9 @@ impl Plane {
     /// turns at once, then those that go over the top once, twice ... before; none where the friction is
     /// too weak for it.
     pub fn turning_whirls(&self) -> impl Iterator<Item = (Orbit, Orbit)> {
-        let (mut slow, mut fast) = (self.slowest_whirl(), self.widest_against());
+        // Stops where the wall is upright, on the way against the friction.
+        let widest_against = self.orbit(-FRAC_PI_2, 0.0);
+        let (mut slow, mut fast) = (self.slowest_whirl(), widest_against);
         let a_turn = (4.0 * PI * self.mu).exp();
         std::iter::from_fn(move || {
             let band = (slow, fast);
@@ -74,11 +76,6 @@ impl Plane {
             fast.c *= a_turn;
             (band.0.c < band.1.c).then_some(band)
         })
-    }
-
-    /// Stops where the wall is upright, on the way against the friction.
-    fn widest_against(&self) -> Orbit {
-        self.orbit(-FRAC_PI_2, 0.0)
     }
 
     /// theta' below which the wall cannot hold the rotor at `phi`, rad/s.

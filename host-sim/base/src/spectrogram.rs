@@ -61,9 +61,8 @@ pub struct Analyser {
     rate: f64,
     transform: Arc<dyn Fft<f64>>,
     window: Vec<f64>,
-    /// The last positions, and how many of them count.
+    /// The last positions, at most as many as the window has.
     last: Vec<Complex64>,
-    filled: usize,
     /// Transforms that go into a kept spectrum, and those in the open one.
     stride: usize,
     open: usize,
@@ -80,8 +79,7 @@ impl Analyser {
             rate,
             transform: FftPlanner::new().plan_fft_forward(length),
             window: (0..length).map(hann).collect(),
-            last: vec![Complex64::default(); length],
-            filled: 0,
+            last: Vec::with_capacity(length),
             stride: 1,
             open: 0,
             found: Vec::new(),
@@ -91,20 +89,16 @@ impl Analyser {
     /// Takes the position (m) at `time` (s). Where there is none, the last one stands for it.
     pub fn take(&mut self, time: f64, position: Option<[f64; 2]>) {
         let usable = position.filter(|it| it.iter().all(|part| part.is_finite()));
-        let position = match (usable, self.filled.checked_sub(1)) {
-            (Some([x, y]), _) => Complex64::new(x, y),
-            (None, Some(last)) => self.last[last],
-            (None, None) => return,
+        let usable = usable.map(|[x, y]| Complex64::new(x, y));
+        let Some(position) = usable.or(self.last.last().copied()) else {
+            return;
         };
-        let length = self.last.len();
-        if self.filled == length {
-            let kept = length - length / OVERLAP;
-            self.last.copy_within(length - kept.., 0);
-            self.filled = kept;
+        let length = self.window.len();
+        if self.last.len() == length {
+            self.last.drain(..length / OVERLAP);
         }
-        self.last[self.filled] = position;
-        self.filled += 1;
-        if self.filled == length {
+        self.last.push(position);
+        if self.last.len() == length {
             self.transform(time);
         }
     }
@@ -148,7 +142,7 @@ impl Analyser {
     /// What was found.
     pub fn finish(self) -> Spectrogram {
         Spectrogram {
-            resolution: self.rate / self.last.len() as f64,
+            resolution: self.rate / self.window.len() as f64,
             spectra: self.found,
         }
     }

@@ -43,9 +43,7 @@ impl Plan {
             }),
         }
     }
-}
 
-impl Plan {
     /// The scene `table` with other values. Those that are valid each by itself need not be so together.
     fn with<'a>(
         &self,

@@ -3,7 +3,6 @@
 //! A drop's random numbers depend on the plan's seed and the drop's number alone, so that a sweep gives
 //! the same bytes on any number of threads, in any number of parts, and however often it was interrupted.
 
-mod columns;
 mod draw;
 mod find;
 mod map;

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use toml::Value;
 
 use super::parameter::{as_number, short, text};
-use super::plan::Plan;
+use super::plan::{Listed, Plan};
 use super::summary::Point;
 use touchdown_chart::plot::{Axis, Chart};
 
@@ -19,18 +19,14 @@ pub(super) fn drawn(plan: &Plan, points: &[Point]) -> Markup {
         [(key, values)] if values.iter().all(|it| as_number(it).is_some()) => {
             curve(key, values, points)
         }
-        [(key, values)] => map(&[("", vec![]), (key, values.iter().collect())], points),
-        [others @ .., (row, rows), (column, columns)] => {
-            let axes = [
-                (row.as_str(), rows.iter().collect::<Vec<_>>()),
-                (column.as_str(), columns.iter().collect()),
-            ];
-            let size = rows.len() * columns.len();
+        [column] => map(None, column, points),
+        [others @ .., row, column] => {
+            let size = row.1.len() * column.1.len();
             let maps = points.chunks_exact(size);
             html! {
                 @for part in maps.take(MAPS) {
                     @if !others.is_empty() { h3 { (at(plan, part, others.len())) } }
-                    (map(&axes, part))
+                    (map(Some(row), column, part))
                 }
                 @if points.len() > MAPS * size {
                     p.note { "The others are in points.csv." }
@@ -50,9 +46,10 @@ fn at(plan: &Plan, part: &[Point], others: usize) -> String {
 }
 
 fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
-    let places: Vec<f64> = values.iter().filter_map(as_number).collect();
-    let low = places.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let places = values.iter().filter_map(as_number);
+    let mut order: Vec<_> = places.zip(points).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [low, high] = [order.first(), order.last()].map(|it| it.map_or(0.0, |it| it.0));
     let x = Axis::new(low, high, key, 8.0);
     let y = Axis::new(
         0.0,
@@ -69,8 +66,6 @@ fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
         height: HEIGHT,
     };
     let values = |it: &Point| [it.whirl_low, it.whirl_high, it.whirl_probability];
-    let mut order: Vec<_> = places.into_iter().zip(points).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let curves = html! {
         @for (which, class) in ["limit", "limit", "impact"].into_iter().enumerate() {
             (chart.curve(class, order.iter().map(|it| (it.0, 100.0 * values(it.1)[which]))))
@@ -80,15 +75,15 @@ fn curve(key: &str, values: &[Value], points: &[Point]) -> Markup {
 }
 
 /// A table whose cells are the deeper in colour the more probable whirl is.
-fn map(axes: &[(&str, Vec<&Value>); 2], points: &[Point]) -> Markup {
-    let [(row, rows), (column, columns)] = axes;
+fn map(row: Option<&Listed>, (column, columns): &Listed, points: &[Point]) -> Markup {
+    let name = |index: usize| row.and_then(|(_, rows)| Some(short(&text(rows.get(index)?))));
     let lines = points.chunks(columns.len().max(1));
     html! {
         div.scroll {
             table.map {
                 caption {
                     "Probability of whirl, %: "
-                    @if !row.is_empty() { "down " (row) ", " }
+                    @if let Some((row, _)) = row { "down " (row) ", " }
                     "across " (column)
                 }
                 thead {
@@ -100,7 +95,7 @@ fn map(axes: &[(&str, Vec<&Value>); 2], points: &[Point]) -> Markup {
                 tbody {
                     @for (index, line) in lines.enumerate() {
                         tr {
-                            th scope="row" { (rows.get(index).map_or(String::new(), |it| short(&text(it)))) }
+                            th scope="row" { (name(index).unwrap_or_default()) }
                             @for point in line { (cell(point)) }
                         }
                     }

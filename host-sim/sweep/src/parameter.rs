@@ -53,14 +53,9 @@ impl ParameterTable {
     /// The values; the rule, where there are none.
     pub fn values(&self) -> Result<Values, String> {
         let range = self.from.is_some() || self.to.is_some() || self.steps.is_some();
-        let ways = [
-            self.values.is_some(),
-            range,
-            self.uniform.is_some(),
-            self.log_uniform.is_some(),
-            self.normal.is_some(),
-        ];
-        if ways.iter().filter(|way| **way).count() != 1 {
+        let drawn = [self.uniform, self.log_uniform, self.normal];
+        let lists = usize::from(self.values.is_some()) + usize::from(range);
+        if lists + drawn.iter().flatten().count() != 1 {
             return Err(
                 "takes one of: values; from, to and steps; uniform; log_uniform; normal".to_owned(),
             );
@@ -68,34 +63,31 @@ impl ParameterTable {
         if self.log && !range {
             return Err("log belongs to from, to and steps".to_owned());
         }
-        if let Some(values) = &self.values {
-            return listed(values);
-        }
-        if range {
-            return self.range();
-        }
-        let drawn = match (self.uniform, self.log_uniform, self.normal) {
-            (Some([lo, hi]), ..) => {
+        let distribution = match drawn {
+            [Some([lo, hi]), ..] => {
                 ordered(lo, hi)?;
                 Distribution::Uniform(lo, hi)
             }
-            (_, Some([lo, hi]), _) => {
+            [_, Some([lo, hi]), _] => {
                 ordered(lo, hi)?;
                 above_zero(lo)?;
                 Distribution::LogUniform(lo, hi)
             }
-            (_, _, Some([mean, deviation])) => {
+            [.., Some([mean, deviation])] => {
                 if !(mean.is_finite() && deviation.is_finite() && deviation > 0.0) {
                     return Err("normal takes a mean and a standard deviation above 0".to_owned());
                 }
                 Distribution::Normal(mean, deviation)
             }
-            _ => return Err("has no values".to_owned()),
+            _ => {
+                let listed = self.values.as_deref().map_or_else(|| self.range(), listed);
+                return listed.map(Values::Listed);
+            }
         };
-        Ok(Values::Drawn(drawn))
+        Ok(Values::Drawn(distribution))
     }
 
-    fn range(&self) -> Result<Values, String> {
+    fn range(&self) -> Result<Vec<Value>, String> {
         let (Some(from), Some(to), Some(steps)) = (self.from, self.to, self.steps) else {
             return Err("a range takes from, to and steps (how many values)".to_owned());
         };
@@ -117,20 +109,13 @@ impl ParameterTable {
                 (_, false) => from + (to - from) * part,
             }
         };
-        Ok(Values::Listed(
-            (0..steps).map(|k| Value::Float(value(k))).collect(),
-        ))
+        Ok((0..steps).map(|k| Value::Float(value(k))).collect())
     }
 }
 
-fn listed(values: &[Value]) -> Result<Values, String> {
-    let plain = |value: &Value| {
-        matches!(
-            value,
-            Value::Integer(_) | Value::Float(_) | Value::String(_) | Value::Boolean(_)
-        )
-    };
-    if values.is_empty() || !values.iter().all(plain) {
+fn listed(values: &[Value]) -> Result<Vec<Value>, String> {
+    let is_plain = |it: &Value| !(it.is_array() || it.is_table() || it.is_datetime());
+    if values.is_empty() || !values.iter().all(is_plain) {
         return Err("values must be a list of numbers, texts or booleans".to_owned());
     }
     for (index, value) in values.iter().enumerate() {
@@ -138,25 +123,18 @@ fn listed(values: &[Value]) -> Result<Values, String> {
             return Err(format!("has the value {value} twice"));
         }
     }
-    Ok(Values::Listed(values.to_vec()))
+    Ok(values.to_vec())
 }
 
 fn ordered(lo: f64, hi: f64) -> Result<(), String> {
-    if lo.is_finite() && hi.is_finite() && lo < hi {
-        Ok(())
-    } else {
-        Err(format!("takes a lower and an upper end, not {lo} and {hi}"))
-    }
+    let is_ordered = lo.is_finite() && hi.is_finite() && lo < hi;
+    let rule = || format!("takes a lower and an upper end, not {lo} and {hi}");
+    is_ordered.then_some(()).ok_or_else(rule)
 }
 
 fn above_zero(value: f64) -> Result<(), String> {
-    if value > 0.0 {
-        Ok(())
-    } else {
-        Err(format!(
-            "a logarithmic scale needs values above 0, not {value}"
-        ))
-    }
+    let rule = || format!("a logarithmic scale needs values above 0, not {value}");
+    (value > 0.0).then_some(()).ok_or_else(rule)
 }
 
 impl Distribution {

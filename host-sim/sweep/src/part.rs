@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use csv::{StringRecord, StringRecordsIntoIter};
 use serde::{Deserialize, Serialize};
 
-use super::columns::columns;
 use super::plan::Plan;
+use super::record::columns;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, LARGEST_TOML, reason};
 use touchdown_files::stream::{Bounded, Meter};

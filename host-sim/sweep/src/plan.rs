@@ -50,6 +50,9 @@ fn default_seed() -> u64 {
     1
 }
 
+/// Key and values of an axis of the grid.
+pub(super) type Listed = (String, Vec<Value>);
+
 /// A valid plan.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -66,7 +69,7 @@ pub struct Plan {
     pub find: Option<f64>,
     pub(super) seed: u64,
     pub(super) start: Option<RandomStart>,
-    pub(super) listed: Vec<(String, Vec<Value>)>,
+    pub(super) listed: Vec<Listed>,
     pub(super) drawn: Vec<(String, Distribution)>,
     /// The scene that the parameters change, and the text that it comes from.
     pub(super) base: Table,
@@ -182,11 +185,7 @@ impl Plan {
     }
 
     fn add(&mut self, key: &str, table: &ParameterTable) -> Result<(), String> {
-        let known = self.listed.iter().map(|(key, _)| key);
-        if known
-            .chain(self.drawn.iter().map(|(key, _)| key))
-            .any(|it| it == key)
-        {
+        if self.keys().any(|it| it == key) {
             return Err("is there twice".to_owned());
         }
         if key == "run.seed" || (self.start.is_some() && key.starts_with("start.")) {
@@ -232,6 +231,12 @@ impl Plan {
             *values = (points.iter().map(|it| values[*it as usize].clone())).collect();
         }
         plan
+    }
+
+    /// The listed ones, then those that are drawn.
+    pub(super) fn keys(&self) -> impl Iterator<Item = &str> {
+        let listed = self.listed.iter().map(|(key, _)| key.as_str());
+        listed.chain(self.drawn.iter().map(|(key, _)| key.as_str()))
     }
 
     /// Points of the grid.

@@ -1,10 +1,13 @@
-//! What a drop of a sweep came to.
+//! What a drop of a sweep came to, and its row.
 
 use std::f64::consts::TAU;
 
 use csv::StringRecord;
 use serde::Deserialize;
 
+use super::draw::Drawn;
+use super::parameter::text;
+use super::plan::Plan;
 use touchdown_base::history::{History, Regime};
 use touchdown_scene::Scene;
 
@@ -59,20 +62,54 @@ impl Record {
 
     /// From a row of the table; `None` where that is none of it.
     pub fn of_row(row: &StringRecord) -> Option<Self> {
-        let last = row.iter().skip(row.len().checked_sub(8)?);
+        let last = row.iter().skip(row.len().checked_sub(MEASURED.len())?);
         let own: StringRecord = row.iter().take(1).chain(last).collect();
         own.deserialize(None).ok()
     }
+}
 
-    /// The numbers that follow the impacts.
-    pub fn values(&self) -> [Option<f64>; 6] {
-        [
-            self.contact_start,
-            self.whirl_start,
-            self.impact_speed,
-            self.impulse,
-            self.end_load,
-            self.whirl_frequency,
-        ]
+/// Columns of the start, where it is drawn.
+const START: [&str; 4] = ["start_x_rel", "start_y_rel", "start_vx_m_s", "start_vy_m_s"];
+
+/// Name of a column, and what a row has there.
+pub(super) type NamedCell<R> = (&'static str, fn(&R) -> String);
+
+/// The last columns, in the order of a record's fields.
+const MEASURED: [NamedCell<Record>; 8] = [
+    ("regime", |it| <&str>::from(it.regime).to_owned()),
+    ("impacts", |it| it.impacts.to_string()),
+    ("contact_start_s", |it| cell(it.contact_start)),
+    ("whirl_start_s", |it| cell(it.whirl_start)),
+    ("impact_speed_max_m_s", |it| cell(it.impact_speed)),
+    ("impulse_max_n_s", |it| cell(it.impulse)),
+    ("end_load_n", |it| cell(it.end_load)),
+    ("whirl_frequency_hz", |it| cell(it.whirl_frequency)),
+];
+
+/// Names of a row's columns.
+pub(super) fn columns(plan: &Plan) -> Vec<&str> {
+    let mut columns = vec!["drop", "point"];
+    columns.extend(plan.keys());
+    if plan.start.is_some() {
+        columns.extend(START);
     }
+    columns.extend(MEASURED.map(|(name, _)| name));
+    columns
+}
+
+/// The row of a drop.
+pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> {
+    let mut cells = vec![record.index.to_string(), drawn.point.to_string()];
+    cells.extend(plan.values(drawn.point).into_iter().map(text));
+    cells.extend(drawn.values.iter().map(f64::to_string));
+    if let Some(([x, y], [u, v])) = drawn.start {
+        cells.extend([x, y, u, v].map(|it| it.to_string()));
+    }
+    cells.extend(MEASURED.map(|(_, cell)| cell(record)));
+    cells
+}
+
+/// Empty where there is no value.
+pub(super) fn cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), |it| it.to_string())
 }

@@ -7,13 +7,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::json;
 
-use super::columns::{cell, columns};
 use super::find::Found;
 use super::page::page;
 use super::parameter::text;
 use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
 use super::plan::{Plan, Until};
-use super::record::Record;
+use super::record::{NamedCell, Record, cell, columns};
 use super::summary::{Gathered, Point, total};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, reason};
@@ -35,6 +34,7 @@ pub struct Results {
     pub found: Option<Found>,
 }
 
+/// `sweep.json`.
 #[derive(Serialize)]
 struct Json<'a> {
     title: &'a str,
@@ -63,20 +63,21 @@ pub fn found(folders: &[String]) -> Result<(Plan, Vec<PathBuf>), Failure> {
         }
     }
     let all = folders.join(", ");
+    let refused = |rule: String| Err(InputError::of_file(&all, rule).into());
     let Some(&(parts, _)) = files.keys().next() else {
-        return Err(InputError::of_file(&all, "has no part of a sweep").into());
+        return refused("has no part of a sweep".to_owned());
     };
     if let Some((others, _)) = files.keys().find(|(others, _)| *others != parts) {
-        let rule = format!("has parts of {parts} and parts of {others}: keep one set of them");
-        return Err(InputError::of_file(&all, rule).into());
+        return refused(format!(
+            "has parts of {parts} and parts of {others}: keep one set of them"
+        ));
     }
     let mut missing = (1..=parts).filter(|part| !files.contains_key(&(parts, *part)));
     if let Some(first) = missing.next() {
-        let rule = format!(
+        return refused(format!(
             "{} of {parts} parts are missing, the first is {first}: run them with --shard, and merge again",
             1 + missing.count()
-        );
-        return Err(InputError::of_file(&all, rule).into());
+        ));
     }
     let paths: Vec<_> = files.into_values().collect();
     let plan = plan_of(&paths[0])?;
@@ -127,7 +128,15 @@ impl Results {
         found: Option<Found>,
         folder: &Path,
     ) -> Result<Self, Failure> {
-        let json = results_json(plan, &points, found.as_ref())?;
+        let json = serde_json::to_string_pretty(&Json {
+            title: &plan.title,
+            drops: total(&points),
+            seed: plan.seed,
+            until: plan.until,
+            find: found.as_ref(),
+            points: &points,
+        });
+        let json = json.map_err(|error| Failure::output("sweep.json")(error.into()))? + "\n";
         let mut outputs = Vec::new();
         for (name, text) in [
             ("points.csv", points_csv(plan, &points)?),
@@ -156,53 +165,35 @@ pub(super) fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_j
         .collect()
 }
 
+/// Columns of `points.csv` after the values.
+const MEASURED: [NamedCell<Point>; 9] = [
+    ("drops", |it| it.drops.to_string()),
+    ("whirl_probability", |it| it.whirl_probability.to_string()),
+    ("whirl_low", |it| it.whirl_low.to_string()),
+    ("whirl_high", |it| it.whirl_high.to_string()),
+    ("backward_probability", |it| {
+        it.backward_probability.to_string()
+    }),
+    ("whirl_start_median_s", |it| cell(it.whirl_start_median_s)),
+    ("impact_speed_max_m_s", |it| cell(it.impact_speed_max_m_s)),
+    ("impulse_max_n_s", |it| cell(it.impulse_max_n_s)),
+    ("end_load_max_n", |it| cell(it.end_load_max_n)),
+];
+
 fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
-    let measured = [
-        "drops",
-        "whirl_probability",
-        "whirl_low",
-        "whirl_high",
-        "backward_probability",
-        "whirl_start_median_s",
-        "impact_speed_max_m_s",
-        "impulse_max_n_s",
-        "end_load_max_n",
-    ];
     let failed = |error: csv::Error| Failure::output("points.csv")(error.into());
     let mut table = csv::Writer::from_writer(Vec::new());
     let keys = plan.listed.iter().map(|(key, _)| key.as_str());
+    let measured = MEASURED.map(|(name, _)| name);
     let head: Vec<_> = ["point"].into_iter().chain(keys).chain(measured).collect();
     table.write_record(head).map_err(failed)?;
     for it in points {
         let mut row = vec![it.point.to_string()];
         row.extend(plan.values(it.point).into_iter().map(text));
-        row.extend([
-            it.drops.to_string(),
-            it.whirl_probability.to_string(),
-            it.whirl_low.to_string(),
-            it.whirl_high.to_string(),
-            it.backward_probability.to_string(),
-            cell(it.whirl_start_median_s),
-            cell(it.impact_speed_max_m_s),
-            cell(it.impulse_max_n_s),
-            cell(it.end_load_max_n),
-        ]);
+        row.extend(MEASURED.map(|(_, cell)| cell(it)));
         table.write_record(row).map_err(failed)?;
     }
     let bytes = table.into_inner();
     let bytes = bytes.map_err(|error| Failure::output("points.csv")(error.into_error()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-fn results_json(plan: &Plan, points: &[Point], find: Option<&Found>) -> Result<String, Failure> {
-    let json = Json {
-        title: &plan.title,
-        drops: total(points),
-        seed: plan.seed,
-        until: plan.until,
-        find,
-        points,
-    };
-    let text = serde_json::to_string_pretty(&json).map_err(io::Error::from);
-    Ok(text.map_err(Failure::output("sweep.json"))? + "\n")
 }

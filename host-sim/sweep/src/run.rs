@@ -6,11 +6,10 @@ use std::path::Path;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use super::columns::{cells, columns};
 use super::draw::{Drawn, Scenes};
 use super::part::{Part, first_line};
 use super::plan::{Plan, Until};
-use super::record::Record;
+use super::record::{Record, cells, columns};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
 use touchdown_base::output::Output;

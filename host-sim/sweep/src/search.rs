@@ -23,8 +23,8 @@ use touchdown_base::progress;
 const RISK: f64 = 0.05;
 /// Drops between two looks.
 const BATCH: u64 = 1_024;
-/// Drops that share what is read of a scene.
-const CHUNK: u64 = 128;
+/// Drops at the least that share what is read of a scene.
+const CHUNK: usize = 128;
 
 /// What is known of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,15 +100,14 @@ impl Search<'_> {
         while done < plan.drops && verdict == Verdict::Undecided {
             // A quarter more each time: the looks cost little, and no core waits long.
             let until = (done + BATCH.max(done / 4)).min(plan.drops);
-            let starts: Vec<u64> = (done..until).step_by(CHUNK as usize).collect();
-            let chunk = |start: &u64| {
-                let mut scenes = Scenes::new(plan);
-                (*start..(start + CHUNK).min(until))
-                    .map(|index| scenes.record(&plan.draw_at(point, index), index))
-                    .collect::<Result<Vec<Record>, Failure>>()
-            };
-            let records: Vec<_> = starts.par_iter().map(chunk).collect::<Result<_, _>>()?;
-            records.iter().flatten().for_each(|it| gathered.take(it));
+            let indices: Vec<u64> = (done..until).collect();
+            let records: Vec<Record> = (indices.into_par_iter().with_min_len(CHUNK))
+                .map_init(
+                    || Scenes::new(plan),
+                    |scenes, index| scenes.record(&plan.draw_at(point, index), index),
+                )
+                .collect::<Result<_, Failure>>()?;
+            records.iter().for_each(|it| gathered.take(it));
             done = until;
             bar.set_position(done);
             verdict = self.judge(gathered.whirls());

@@ -91,11 +91,33 @@ fn lines(it: &Instruction) -> (u32, Option<u32>) {
 }
 
 /// What the flash is asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Asked {
     Nothing,
     Code(u32),
     Data(u32),
+}
+
+/// Gives `take` what an instruction costs after the one that ran before: cycles that are known before it runs, and what is
+/// asked after them.
+fn each_part(it: &Instruction, last: Option<&Instruction>, mut take: impl FnMut(Cycles, Asked)) {
+    let follows = |last: &&Instruction| last.address + last.bytes == it.address;
+    let before = last.filter(follows);
+    let mut known = match (last, before) {
+        (Some(_), None) => REFILL,
+        _ => Cycles::default(),
+    };
+    let (first, next) = lines(it);
+    // At the most each line waits anew, and so does the target of each branch.
+    let is_new = before.is_none_or(|it| line(it.address + it.bytes - 1) != first);
+    for line in is_new.then_some(first).into_iter().chain(next) {
+        known.upper += WAIT_STATES;
+        take(mem::take(&mut known), Asked::Code(line));
+    }
+    known.add(cost(it, last));
+    let literal = it.literal.map(line);
+    known.upper += literal.map_or(0, |_| LITERAL_MOST);
+    take(known, literal.map_or(Asked::Nothing, Asked::Data));
 }
 
 /// What is known of some instructions before they run, and what follows them.
@@ -124,33 +146,18 @@ impl Block {
         let (mut instructions, mut cycles) = (0, Cycles::default());
         for pair in code.windows(2) {
             let [before, it] = pair else { continue };
-            let mut ask = |instructions: &mut u32, cycles: &mut Cycles, then| {
-                steps.push(KnownStep {
-                    end: it.address,
-                    instructions: mem::take(instructions),
-                    cycles: mem::take(cycles),
-                    then,
-                });
-            };
-            let (line, next) = lines(it);
-            let (begun, at_end) = lines(before);
-            let new = (line != at_end.unwrap_or(begun)).then_some(line);
-            for line in new.into_iter().chain(next) {
-                ask(&mut instructions, &mut cycles, Asked::Code(line));
-                cycles.upper += WAIT_STATES;
-            }
             instructions += 1;
-            cycles.add(cost(it, Some(before)));
-            if let Some(literal) = it.literal {
-                cycles.upper += LITERAL_MOST;
-                ask(
-                    &mut instructions,
-                    &mut cycles,
-                    Asked::Data(self::line(literal)),
-                );
-            } else if it.loads {
-                ask(&mut instructions, &mut cycles, Asked::Nothing);
-            }
+            each_part(it, Some(before), |known, then| {
+                cycles.add(known);
+                if it.loads || then != Asked::Nothing {
+                    steps.push(KnownStep {
+                        end: it.address,
+                        instructions: mem::take(&mut instructions),
+                        cycles: mem::take(&mut cycles),
+                        then,
+                    });
+                }
+            });
         }
         steps.push(KnownStep {
             end: last.address,
@@ -203,12 +210,7 @@ impl<'a> Stretch<'a> {
             && step.end <= address
         {
             self.instructions += step.instructions;
-            self.cycles.add(step.cycles);
-            self.cycles.modelled += match step.then {
-                Asked::Nothing => 0,
-                Asked::Code(line) => self.flash.wait_for_code(line, self.cycles.modelled),
-                Asked::Data(line) => self.flash.wait_for_data(line),
-            };
+            self.take(step.cycles, step.then);
             self.rest = rest;
         }
     }
@@ -217,34 +219,23 @@ impl<'a> Stretch<'a> {
     fn run(&mut self, it: &'a Instruction) {
         self.instructions += 1;
         let last = self.last.replace(it);
-        let follows = last.is_some_and(|last| last.address + last.bytes == it.address);
-        if last.is_some() && !follows {
-            self.cycles.add(REFILL);
-        }
-        self.fetch(it, last.filter(|_| follows));
-        self.cycles.add(cost(it, last));
-        if let Some(literal) = it.literal {
-            self.read(literal);
-        }
+        each_part(it, last, |known, then| self.take(known, then));
+    }
+
+    fn take(&mut self, known: Cycles, then: Asked) {
+        self.cycles.add(known);
+        self.cycles.modelled += match then {
+            Asked::Nothing => 0,
+            Asked::Code(line) => self.flash.wait_for_code(line, self.cycles.modelled),
+            Asked::Data(line) => self.flash.wait_for_data(line),
+        };
     }
 
     /// The last instruction has read a datum in flash at this address.
+    #[cfg(not(test))]
     pub fn read(&mut self, address: u32) {
         self.cycles.modelled += self.flash.wait_for_data(line(address));
         self.cycles.upper += LITERAL_MOST;
-    }
-
-    fn fetch(&mut self, it: &Instruction, before: Option<&Instruction>) {
-        let (first, next) = lines(it);
-        self.cycles.modelled += self.flash.wait_for_code(first, self.cycles.modelled);
-        // At the most each line waits anew, and so does the target of each branch.
-        if before.is_none_or(|it| line(it.address + it.bytes - 1) != first) {
-            self.cycles.upper += WAIT_STATES;
-        }
-        if let Some(next) = next {
-            self.cycles.modelled += self.flash.wait_for_code(next, self.cycles.modelled);
-            self.cycles.upper += WAIT_STATES;
-        }
     }
 }
 

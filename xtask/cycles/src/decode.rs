@@ -2,9 +2,10 @@
 //! Manual, A5 and A7. Registers of the floating-point unit are bits of a mask, S0 lowest.
 
 /// What an instruction does, as far as its cycles depend on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// One cycle.
+    #[default]
     Plain,
     /// Folded into the one before.
     IfThen,
@@ -30,7 +31,7 @@ pub enum Kind {
 }
 
 /// An instruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Instruction {
     pub address: u32,
     pub bytes: u32,
@@ -50,11 +51,7 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     let mut it = Instruction {
         address,
         bytes: if first >= 0xe800 { 4 } else { 2 },
-        kind: Kind::Plain,
-        literal: None,
-        loads: false,
-        fp_reads: 0,
-        fp_writes: 0,
+        ..Instruction::default()
     };
     match first {
         0..0xe800 => narrow(&mut it, first),
@@ -72,13 +69,9 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     it
 }
 
-/// The address that code at `address` sees as its own, aligned.
-fn base(address: u32) -> u32 {
-    (address + 4) & !3
-}
-
+/// The address `by` above or below that which code at `address` sees as its own, aligned.
 fn offset(address: u32, up: bool, by: u32) -> u32 {
-    let base = base(address);
+    let base = (address + 4) & !3;
     if up {
         base.wrapping_add(by)
     } else {

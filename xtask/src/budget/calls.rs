@@ -7,13 +7,6 @@ use anyhow::{Context, ensure};
 /// What marks a function that calls through a pointer.
 pub const POINTERS: &str = "pointers in ";
 
-/// From `address` on there is code, or data.
-#[derive(Clone, Copy, Debug)]
-pub struct Region {
-    pub address: u64,
-    pub is_code: bool,
-}
-
 #[derive(Clone, Debug)]
 pub struct Function {
     pub name: String,
@@ -52,13 +45,15 @@ enum Branch {
 }
 
 impl Graph {
-    /// Of code that begins at `base`.
-    pub fn new(base: u64, code: &[u8], regions: &mut [Region], functions: Vec<Function>) -> Self {
-        regions.sort_by_key(|it| it.address);
-        let is_code = |address: u64| {
-            let next = regions.partition_point(|it| it.address <= address);
-            next > 0 && regions[next - 1].is_code
-        };
+    /// Of code that begins at `base`. From each address of `is_code` on there is code, or data.
+    pub fn new(
+        base: u64,
+        code: &[u8],
+        is_code: &BTreeMap<u64, bool>,
+        functions: Vec<Function>,
+    ) -> Self {
+        let is_code =
+            |address: u64| (is_code.range(..=address).next_back()).is_some_and(|it| *it.1);
         let half = |address: u64| {
             let at = address.checked_sub(base)? as usize;
             let bytes = code.get(at..at + 2)?;
@@ -225,16 +220,13 @@ mod tests {
         code[..10].copy_from_slice(&[0, 0xf0, 6, 0xf8, 0, 0xf0, 0x0c, 0xf8, 0x70, 0x47]);
         code[0x10..0x12].copy_from_slice(&[0x70, 0x47]);
         code[0x20..0x22].copy_from_slice(&[0x70, 0x47]);
-        let code_only = Region {
-            address: 0,
-            is_code: true,
-        };
+        let code_only = BTreeMap::from([(0, true)]);
         let functions = vec![
             function("main", 0, 10, Some(8)),
             function("a", 0x10, 2, Some(100)),
             function("b", 0x20, 2, None),
         ];
-        let graph = Graph::new(0, &code, &mut [code_only], functions);
+        let graph = Graph::new(0, &code, &code_only, functions);
         let deepest = graph.deepest("main").unwrap();
         assert_eq!(deepest.bytes, 108);
         assert_eq!(deepest.open, ["b"]);
@@ -245,12 +237,9 @@ mod tests {
     fn recursion_has_no_bound() {
         // At 0: bl 4. At 4: bl 0.
         let code = [0, 0xf0, 0, 0xf8, 0xff, 0xf7, 0xfc, 0xff];
-        let code_only = Region {
-            address: 0,
-            is_code: true,
-        };
+        let code_only = BTreeMap::from([(0, true)]);
         let functions = vec![function("a", 0, 4, Some(8)), function("b", 4, 4, Some(8))];
-        let graph = Graph::new(0, &code, &mut [code_only], functions);
+        let graph = Graph::new(0, &code, &code_only, functions);
         assert!(
             graph
                 .deepest("a")

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::queue::{self, MainLoopTurn, Queue};
 use super::stream::Stream;
-use super::ticks::{self, TYPICAL, Table};
+use super::ticks::{self, Row, TYPICAL, Table};
 use crate::firmware;
 
 const CLOCK: u64 = 168_000_000;
@@ -156,8 +156,8 @@ struct PlayedStream<'a> {
 /// The counting image with the plugin.
 pub struct Player {
     image: PathBuf,
-    plugin: PathBuf,
-    code: PathBuf,
+    /// Its file, and the image's code.
+    plugin: String,
 }
 
 /// The worst tick of a stream.
@@ -169,14 +169,8 @@ pub struct WorstTick {
 
 impl fmt::Display for WorstTick {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            instructions,
-            modelled,
-        } = self;
-        write!(
-            f,
-            "{modelled} cycles as modelled, {instructions} instructions"
-        )
+        write!(f, "{} cycles as modelled", self.modelled)?;
+        write!(f, ", {} instructions", self.instructions)
     }
 }
 
@@ -185,10 +179,10 @@ impl Player {
         let code = ticks::folder(image, "run")?.join("code.bin");
         fs::write(&code, firmware::flash_content(image)?)
             .context("cannot write the image's code")?;
+        let plugin = firmware::build_plugin()?;
         Ok(Self {
             image: image.into(),
-            plugin: firmware::build_plugin()?,
-            code,
+            plugin: format!("{},code={}", plugin.display(), code.display()),
         })
     }
 
@@ -204,12 +198,8 @@ impl Player {
             fs::write(folder.join("streams.bin"), bytes).context("cannot write the streams")?;
         }
         let out = folder.join("windows.bin");
-        let plugin = [
-            self.plugin.display().to_string(),
-            format!("code={}", self.code.display()),
-            format!("out={}", out.display()),
-        ];
-        let table = ticks::count_in(&folder, &self.image, Some(&plugin.join(",")))?;
+        let plugin = format!("{},out={}", self.plugin, out.display());
+        let table = ticks::count_in(&folder, &self.image, Some(&plugin))?;
         let bytes = fs::read(&out).context("the plugin wrote nothing")?;
         let (windows, _) = bytes.as_chunks();
         Ok((table, windows.iter().map(window).collect()))
@@ -220,14 +210,11 @@ impl Player {
         let (table, windows) = self.play(name, described)?;
         let streams = streams(&table, &windows)?;
         let modelled = |it: &PlayedStream| worst(it.ticks.iter().map(|it| it.cycles)).modelled;
-        let worst = table
-            .streams()
-            .zip(&streams)
-            .map(|((name, ..), stream)| WorstTick {
-                instructions: table.worst_in(name).unwrap_or(0),
-                modelled: modelled(stream),
-            });
-        Ok(worst.collect())
+        let worst = |((row, _), stream): ((&Row, _), _)| WorstTick {
+            instructions: row.worst,
+            modelled: modelled(stream),
+        };
+        Ok(table.streams().zip(&streams).map(worst).collect())
     }
 }
 
@@ -236,36 +223,27 @@ impl Player {
 pub fn count(image: &Path, corpus: &[Stream]) -> anyhow::Result<(Table, Modelled)> {
     let player = Player::new(image)?;
     let (own, found) = thread::scope(|scope| {
-        let found = scope.spawn(|| match corpus {
-            [] => Ok(None),
-            _ => player.play("corpus", corpus).map(Some),
-        });
+        let found = scope.spawn(|| player.play("corpus", corpus));
         (player.play("run", &[]), found.join().expect("no panic"))
     });
-    let ((table, windows), found) = (own?, found?);
+    let ((table, windows), (of_corpus, windows_of_corpus)) = (own?, found?);
     let mut all = streams(&table, &windows)?;
-    if let Some((table, windows)) = &found {
-        all.extend(streams(table, windows)?);
-    }
+    all.extend(streams(&of_corpus, &windows_of_corpus)?);
     let mut modelled = modelled(&all);
-    let instructions = found.iter().flat_map(|(table, _)| {
-        let worst = table.streams().map(|(name, ..)| table.worst_in(name));
-        worst.flatten().collect::<Vec<_>>()
-    });
-    modelled.corpus_instructions_worst = instructions.max();
+    modelled.corpus_instructions_worst = of_corpus.streams().map(|it| it.0.worst).max();
     modelled.streams_of_corpus = corpus.len();
     Ok((table, modelled))
 }
 
 fn window(bytes: &[u8; WINDOW_BYTES]) -> CountedWindow {
-    let (words, _) = bytes.as_chunks();
-    let number = |k: usize| u64::from(u32::from_le_bytes(words[k]));
+    let number = |k: usize| u64::from(u32::from_le_bytes(bytes.as_chunks().0[k]));
+    let [instructions, lower, modelled, upper] = [0, 1, 2, 3].map(number);
     CountedWindow {
-        instructions: number(0),
+        instructions,
         cycles: Cycles {
-            lower: number(1),
-            modelled: number(2),
-            upper: number(3),
+            lower,
+            modelled,
+            upper,
         },
     }
 }
@@ -279,17 +257,17 @@ fn streams<'a>(
     let (empty, mut rest) = windows.split_first().context("the plugin saw no window")?;
     let readings = empty.instructions + 1;
     let mut streams = vec![];
-    for (scene, ticks, parts) in table.streams() {
+    for (row, parts) in table.streams() {
+        let (scene, ticks, counted) = (&row.scene, row.calls as usize, row.worst);
         let all = ticks * (1 + parts);
         ensure!(rest.len() >= all, "the plugin's windows end in {scene}");
         let (these, after) = rest.split_at(all);
         let (ticks, parts) = these.split_at(ticks);
         let worst = ticks.iter().map(|it| it.instructions).max();
-        let worst = worst.map(|it| it.saturating_sub(readings));
+        let worst = worst.map_or(0, |it| it.saturating_sub(readings));
         ensure!(
-            worst == table.worst_in(scene),
-            "{scene}: {worst:?} instructions by the plugin, {:?} by the image",
-            table.worst_in(scene)
+            worst == counted,
+            "{scene}: {worst} instructions by the plugin, {counted} by the image"
         );
         streams.push(PlayedStream {
             is_typical: scene == TYPICAL,
@@ -298,11 +276,8 @@ fn streams<'a>(
         });
         rest = after;
     }
-    ensure!(
-        rest.is_empty(),
-        "the plugin saw {} windows too many",
-        rest.len()
-    );
+    let left = rest.len();
+    ensure!(left == 0, "the plugin saw {left} windows too many");
     Ok(streams)
 }
 
@@ -398,11 +373,7 @@ pub fn table(it: &Modelled) -> String {
         ("worst", it.worst),
         ("on top at worst", it.top_priority_worst),
     ] {
-        let Cycles {
-            lower,
-            modelled,
-            upper,
-        } = cycles;
+        let [lower, modelled, upper] = [cycles.lower, cycles.modelled, cycles.upper];
         let _ = writeln!(text, "    {name:24} {lower:7} {modelled:8} {upper:7}");
     }
     if let Some(worst) = it.corpus_instructions_worst {

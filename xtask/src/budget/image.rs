@@ -1,12 +1,14 @@
 //! What an image's symbols and code say: what the tick can reach, and the stack.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
+use addr2line::gimli::{EndianSlice, LittleEndian, Reader};
 use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-use super::calls::{self, Function, Graph, Region};
+use super::calls::{self, Function, Graph};
 use crate::files;
 
 /// Names of what a panic needs.
@@ -42,11 +44,8 @@ pub fn look(image: &Path) -> anyhow::Result<Reached> {
     ensure!(functions > 0, "the image has no symbols");
     if has_panic {
         let graph = graph(&elf)?;
-        found.panics = graph
-            .callers(is_panic)
-            .into_iter()
-            .map(str::to_owned)
-            .collect();
+        let callers = graph.callers(is_panic).into_iter();
+        found.panics = callers.map(str::to_owned).collect();
         ensure!(!found.panics.is_empty(), "a panic that nobody calls");
     }
     Ok(found)
@@ -60,10 +59,9 @@ fn is_panic(name: &str) -> bool {
 fn is_soft_float(name: &str) -> bool {
     let name = name.rsplit("::").next().unwrap_or(name);
     let arm = name.strip_prefix("__aeabi_");
-    let of_f64 =
-        |rest: &str| rest.starts_with('d') || rest.ends_with("2d") || rest.starts_with("cd");
-    let integers = ["div0"];
-    arm.is_some_and(|rest| of_f64(rest) && !integers.iter().any(|it| rest.contains(it)))
+    let of_f64 = |it: &str| it.starts_with('d') || it.ends_with("2d") || it.starts_with("cd");
+    // A division of integers by zero.
+    arm.is_some_and(|it| of_f64(it) && !it.contains("div0"))
         || (name.starts_with("__") && name.contains("df"))
 }
 
@@ -134,42 +132,35 @@ fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
     let code = text.data()?;
     let frames = match file.section_by_name(".stack_sizes") {
         Some(section) => frames(section.data()?)?,
-        None => vec![],
+        None => BTreeMap::new(),
     };
-    let mut regions = vec![];
+    let mut is_code = BTreeMap::new();
     let mut functions = vec![];
     for symbol in file.symbols() {
         let (name, address) = (symbol.name()?, symbol.address());
         if name.starts_with("$t") || name.starts_with("$d") {
-            regions.push(Region {
-                address,
-                is_code: name.starts_with("$t"),
-            });
+            is_code.insert(address, name.starts_with("$t"));
         } else if symbol.kind() == SymbolKind::Text && symbol.size() > 0 {
             let address = address & !1;
-            let frame = frames.iter().find(|(at, _)| *at == address);
             functions.push(Function {
                 name: format!("{:#}", rustc_demangle::demangle(name)),
                 address,
                 size: symbol.size(),
-                frame: frame.map(|(_, bytes)| *bytes),
+                frame: frames.get(&address).copied(),
             });
         }
     }
-    Ok(Graph::new(text.address(), code, &mut regions, functions))
+    Ok(Graph::new(text.address(), code, &is_code, functions))
 }
 
 /// Address and frame of each function: an address of four bytes, then a ULEB128.
-fn frames(mut bytes: &[u8]) -> anyhow::Result<Vec<(u64, u64)>> {
-    let mut frames = vec![];
-    while let Some((address, rest)) = bytes.split_first_chunk() {
-        let address = u64::from(u32::from_le_bytes(*address) & !1);
-        let length = rest.iter().position(|byte| byte & 0x80 == 0);
-        let (number, after) = rest.split_at(length.context("a stack size that was cut")? + 1);
-        let number = number.iter().rev();
-        let frame = number.fold(0, |sum, byte| sum << 7 | u64::from(byte & 0x7f));
-        frames.push((address, frame));
-        bytes = after;
+fn frames(bytes: &[u8]) -> anyhow::Result<BTreeMap<u64, u64>> {
+    let mut rest = EndianSlice::new(bytes, LittleEndian);
+    let mut frames = BTreeMap::new();
+    while !rest.is_empty() {
+        let address = u64::from(rest.read_u32()? & !1);
+        let frame = rest.read_uleb128()?;
+        frames.entry(address).or_insert(frame);
     }
     Ok(frames)
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
-use crate::firmware::{self, Extra};
+use crate::firmware::{self, STACK_SIZES};
 
 use self::cycles::Modelled;
 pub use self::kept::FILE as MEASURED;
@@ -78,9 +78,9 @@ pub struct Part {
 pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     println!("Budget: building");
     let images = firmware::images();
-    firmware::build_one("touchdown-count-tick", Extra::None)?;
-    firmware::build_one("touchdown-tick", Extra::StackSizes)?;
-    firmware::build_one("touchdown-firmware", Extra::StackSizes)?;
+    firmware::build_one("touchdown-count-tick", &[])?;
+    firmware::build_one("touchdown-tick", STACK_SIZES)?;
+    firmware::build_one("touchdown-firmware", STACK_SIZES)?;
 
     let (table, cycles) = cycles::count(&images.join("touchdown-count-tick"), &stream::read()?)?;
     print!("{}", table.by_scene());
@@ -123,10 +123,7 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
     let limits = judge::limits()?;
     print!("{}", judge::table(&budget, &limits));
     let breaches = judge::breaches(&budget, &limits);
-    ensure!(
-        breaches.is_empty(),
-        "over budget:\n  {}",
-        breaches.join("\n  ")
-    );
+    let lines = breaches.join("\n  ");
+    ensure!(breaches.is_empty(), "over budget:\n  {lines}");
     kept::require(&kept::differences(&kept::read()?, &budget)?)
 }

@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gimli::{Dwarf, EndianSlice, LittleEndian, SectionId};
+use addr2line::Context;
+use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
 use object::{Object, ObjectSection};
 
 use super::Module;
 use crate::files;
 use crate::firmware::FLASH;
-
-type Slice<'a> = EndianSlice<'a, LittleEndian>;
 
 /// Bytes of code by module, the largest first.
 pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
@@ -21,11 +20,13 @@ pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
         let data = section.and_then(|it| it.data().ok()).unwrap_or_default();
         Ok::<_, gimli::Error>(EndianSlice::new(data, LittleEndian))
     };
-    let dwarf = Dwarf::load(section)?;
+    let context = Context::from_dwarf(Dwarf::load(section)?)?;
     let mut sums = BTreeMap::new();
-    let mut units = dwarf.units();
-    while let Some(header) = units.next()? {
-        add(&dwarf, &dwarf.unit(header)?, &mut sums)?;
+    for (_, bytes, place) in context.find_location_range(FLASH.start, FLASH.end)? {
+        let sum: &mut u64 = sums
+            .entry(module(place.file.unwrap_or_default()))
+            .or_default();
+        *sum += bytes;
     }
     let modules = sums.into_iter();
     let mut modules: Vec<_> = modules
@@ -33,37 +34,6 @@ pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
         .collect();
     modules.sort_by_key(|it| std::cmp::Reverse(it.bytes));
     Ok(modules)
-}
-
-/// Adds what one unit has: from each row of its line table to the next.
-fn add<'a>(
-    dwarf: &Dwarf<Slice<'a>>,
-    unit: &gimli::Unit<Slice<'a>>,
-    sums: &mut BTreeMap<String, u64>,
-) -> anyhow::Result<()> {
-    let Some(program) = unit.line_program.clone() else {
-        return Ok(());
-    };
-    let mut rows = program.rows();
-    let mut last: Option<(u64, String)> = None;
-    while let Some((header, row)) = rows.next_row()? {
-        let address = row.address();
-        if let Some((from, module)) = last.take() {
-            *sums.entry(module).or_default() += address.saturating_sub(from);
-        }
-        if row.end_sequence() || !FLASH.contains(&address) {
-            continue;
-        }
-        let mut path = String::new();
-        if let Some(file) = row.file(header) {
-            for part in file.directory(header).into_iter().chain([file.path_name()]) {
-                path += "/";
-                path += &dwarf.attr_string(unit, part)?.to_string_lossy();
-            }
-        }
-        last = Some((address, module(&path)));
-    }
-    Ok(())
 }
 
 /// Module of ours, or package, that a source file belongs to.

@@ -9,7 +9,7 @@ use anyhow::{Context, ensure};
 
 use super::cycles::{Player, WorstTick};
 use super::stream::{self, Chance, FILE, Stream};
-use crate::firmware::{self, Extra};
+use crate::firmware;
 use crate::toolchain::output;
 use crate::workspace;
 
@@ -26,7 +26,7 @@ type Found = (WorstTick, Stream);
 /// worst ones to the corpus.
 pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
     println!("Search: building");
-    firmware::build_one("touchdown-count-tick", Extra::None)?;
+    firmware::build_one("touchdown-count-tick", &[])?;
     let player = Player::new(&firmware::images().join("touchdown-count-tick"))?;
     let mut chance = Chance(seed);
     let rounds = count.div_ceil(2 * EMULATORS * PLAYED);
@@ -54,9 +54,7 @@ pub fn run(count: usize, seed: u64) -> anyhow::Result<()> {
         let head = head(&all, count, seed, at_random)?;
         let mut sorted = kept.clone();
         sorted.sort_by_key(|it| Reverse(it.0.modelled));
-        let remarked = sorted
-            .iter()
-            .map(|(worst, stream)| (stream, worst.to_string()));
+        let remarked = sorted.iter().map(|it| (&it.1, it.0.to_string()));
         fs::write(workspace().join(FILE), stream::text(&head, remarked)).context(FILE)?;
     }
     Ok(())

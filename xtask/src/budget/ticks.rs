@@ -18,12 +18,12 @@ const WHOLE: &str = "tick";
 
 /// One line of the image's table.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Row {
+pub struct Row {
     part: String,
-    scene: String,
-    calls: u64,
+    pub scene: String,
+    pub calls: u64,
     sum: u64,
-    worst: u64,
+    pub worst: u64,
 }
 
 /// What the image counted.
@@ -52,15 +52,8 @@ pub fn count(image: &Path) -> anyhow::Result<Table> {
 /// Runs the counting image in a folder, with a plugin of the emulator if given: its file and arguments.
 pub fn count_in(folder: &Path, image: &Path, plugin: Option<&str>) -> anyhow::Result<Table> {
     let status = Command::new("qemu-system-arm")
-        .args([
-            "-M",
-            "netduinoplus2",
-            "-display",
-            "none",
-            "-monitor",
-            "none",
-        ])
-        .args(["-serial", "none"])
+        .args(["-M", "netduinoplus2", "-display", "none"])
+        .args(["-monitor", "none", "-serial", "none"])
         .args(["-semihosting-config", "enable=on,target=native"])
         .args(COUNTING)
         .args(plugin.into_iter().flat_map(|it| ["-plugin", it]))
@@ -106,30 +99,18 @@ impl Table {
     pub fn parts(&self) -> Vec<Part> {
         let typical = self.rows.iter().filter(|row| row.scene == TYPICAL);
         let names = typical.map(|row| &row.part).filter(|part| *part != WHOLE);
-        names
-            .filter_map(|part| {
-                Some(Part {
-                    part: part.clone(),
-                    instructions: self.of(part)?,
-                })
-            })
-            .collect()
+        let parts = names.filter_map(|part| self.of(part).zip(Some(part.clone())));
+        let named = parts.map(|(instructions, part)| Part { part, instructions });
+        named.collect()
     }
 
-    /// Streams in the order they were played, with their ticks, and how many parts of each were counted.
-    pub fn streams(&self) -> impl Iterator<Item = (&str, usize, usize)> {
+    /// The whole ticks of each stream, in the order they were played, and how many parts of each were counted.
+    pub fn streams(&self) -> impl Iterator<Item = (&Row, usize)> {
         let whole = self.rows.iter().filter(|row| row.part == WHOLE);
         whole.map(|row| {
             let of = self.rows.iter().filter(|it| it.scene == row.scene);
-            (row.scene.as_str(), row.calls as usize, of.count() - 1)
+            (row, of.count() - 1)
         })
-    }
-
-    /// The greatest count of a whole tick in a stream.
-    pub fn worst_in(&self, scene: &str) -> Option<u64> {
-        let mut rows = self.rows.iter();
-        let row = rows.find(|row| row.part == WHOLE && row.scene == scene)?;
-        Some(row.worst)
     }
 
     fn of(&self, part: &str) -> Option<Instructions> {

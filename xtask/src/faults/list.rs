@@ -76,10 +76,10 @@ impl Fault {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
 
-    fn fault(name: &str, old: &str) -> Fault {
+    pub fn fault(name: &str, old: &str) -> Fault {
         Fault {
             name: name.into(),
             area: "area".into(),

@@ -1,9 +1,8 @@
 //! Planted faults: whether the tests find them. `xtask/faults/README.md` says how they were chosen.
 
 mod list;
-mod report;
 mod test;
-mod tree;
+pub mod tree;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -11,9 +10,7 @@ use std::path::PathBuf;
 use anyhow::{Context, ensure};
 
 pub use self::list::Fault;
-use self::report::{Found, Trial};
 use self::test::Test;
-pub use self::tree::Tree;
 use crate::workspace;
 
 /// Held streams and values of the core.
@@ -40,15 +37,30 @@ fn try_all(faults: &[Fault]) -> anyhow::Result<()> {
     ensure!(!faults.is_empty(), "no fault of the list is chosen");
     println!("Planted faults: {}", faults.len());
     let mut bench = Bench::new()?;
-    let mut trials = Vec::new();
+    let mut wrong = Vec::new();
     for fault in faults {
-        let trial = bench.trial(fault)?;
-        println!("  {}", trial.line());
-        trials.push(trial);
+        let verdict = verdict(fault, bench.find(fault)?);
+        let (Ok(line) | Err(line)) = &verdict;
+        println!("  {line}");
+        wrong.extend(verdict.err());
     }
-    let wrong = report::wrong(&trials);
     ensure!(wrong.is_empty(), "{}", wrong.join("\n  "));
     Ok(())
+}
+
+/// The test that finds a fault, and the time that it runs, s, without the build.
+type Found = (String, f64);
+
+/// What came of a fault, for people. It is wrong where no test finds it and it has no reason, or where its reason is wrong.
+fn verdict(fault: &Fault, found: Option<Found>) -> Result<String, String> {
+    let title = fault.title();
+    let found = found.map(|(test, seconds)| format!("{title}: found in {seconds:.2} s by {test}"));
+    match (found, &fault.equivalent) {
+        (Some(found), None) => Ok(found),
+        (None, Some(reason)) => Ok(format!("{title}: equivalent: {reason}")),
+        (Some(found), Some(_)) => Err(format!("{found}, but is listed as equivalent")),
+        (None, None) => Err(format!("{title}: SURVIVED")),
+    }
 }
 
 /// All of the list, each of which can be planted.
@@ -62,7 +74,7 @@ pub fn faults() -> anyhow::Result<Vec<Fault>> {
 
 /// The copy of the sources, and what is built from it.
 struct Bench {
-    tree: Tree,
+    tree: PathBuf,
     target: PathBuf,
     /// Tests that pass without a fault.
     passing: BTreeSet<String>,
@@ -70,39 +82,60 @@ struct Bench {
 
 impl Bench {
     fn new() -> anyhow::Result<Self> {
-        let folder = workspace().join("target/faults");
+        let target = workspace().join("target");
+        let tree = target.join("faults/tree");
+        tree::copy(workspace(), &tree)?;
         Ok(Self {
-            tree: Tree::copy(workspace(), &folder.join("tree"))?,
-            target: workspace().join("target"),
+            tree,
+            target,
             passing: BTreeSet::new(),
         })
     }
 
-    fn trial<'a>(&mut self, fault: &'a Fault) -> anyhow::Result<Trial<'a>> {
+    /// The first test that finds the fault, if any does.
+    fn find(&mut self, fault: &Fault) -> anyhow::Result<Option<Found>> {
         let of_core = fault.file.starts_with("shared/").then_some(OF_CORE);
         let tests = of_core.into_iter().chain([OF_FIRMWARE]);
         let tests = tests.chain(fault.test.as_deref()).map(Test::parse);
         for test in tests.collect::<anyhow::Result<Vec<_>>>()? {
             if let Some(seconds) = self.finds(&test, fault)? {
-                let by = test.text;
-                let found = Some(Found { by, seconds });
-                return Ok(Trial { fault, found });
+                return Ok(Some((test.text, seconds)));
             }
         }
-        Ok(Trial { fault, found: None })
+        Ok(None)
     }
 
     /// Whether `test`, which passes without the fault, fails with it; then the time that it runs, s.
     fn finds(&mut self, test: &Test, fault: &Fault) -> anyhow::Result<Option<f64>> {
         if !self.passing.contains(&test.text) {
-            let (passes, _) = test.run(&self.tree.folder, &self.target)?;
+            let (passes, _) = test.run(&self.tree, &self.target)?;
             ensure!(passes, "{} fails without a fault", test.text);
             self.passing.insert(test.text.clone());
         }
-        let _planted = self.tree.plant(fault)?;
-        let tried = test.run(&self.tree.folder, &self.target);
+        let _planted = tree::plant(fault, &self.tree)?;
+        let tried = test.run(&self.tree, &self.target);
         let (passes, seconds) =
             tried.with_context(|| format!("with the fault \"{}\"", fault.title()))?;
         Ok((!passes).then_some(seconds))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_found_or_has_a_reason_is_right() {
+        let is_wrong = |is_found: bool, is_equivalent: bool| {
+            let fault = Fault {
+                equivalent: is_equivalent.then(|| "a reason".into()),
+                ..list::tests::fault("name", "old")
+            };
+            let found = is_found.then(|| ("a test".into(), 1.0));
+            verdict(&fault, found).is_err()
+        };
+        assert!(!is_wrong(true, false) && !is_wrong(false, true));
+        assert!(is_wrong(false, false), "it survived");
+        assert!(is_wrong(true, true), "a reason that does not hold");
     }
 }

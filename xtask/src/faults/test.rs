@@ -2,19 +2,17 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail, ensure};
 use serde_json::Value;
+use wait_timeout::ChildExt;
 
 use crate::test::OTHERS;
 use crate::toolchain::default_cargo;
 
 /// Beyond it a test hangs, and that finds a fault as well.
 const LONGEST: Duration = Duration::from_secs(120);
-/// Between two looks at a test that runs.
-const POLL: Duration = Duration::from_millis(5);
 
 /// Package, one target, and names of tests.
 #[derive(Debug)]
@@ -52,11 +50,8 @@ impl Test {
         let is_library = self.target.len() == 1;
         let mut cargo = default_cargo();
         cargo
-            .args([
-                "test",
-                "--no-run",
-                "--message-format=json-render-diagnostics",
-            ])
+            .args(["test", "--no-run"])
+            .arg("--message-format=json-render-diagnostics")
             .args(if is_library { &package } else { OTHERS })
             .args(&self.target)
             .arg("--target-dir")
@@ -67,15 +62,12 @@ impl Test {
             .stderr(Stdio::piped());
         let built = cargo.output().context("cannot start cargo")?;
         let errors = String::from_utf8_lossy(&built.stderr);
-        ensure!(
-            built.status.success(),
-            "{} does not build:\n{errors}",
-            self.text
-        );
+        let text = &self.text;
+        ensure!(built.status.success(), "{text} does not build:\n{errors}");
         let messages = String::from_utf8_lossy(&built.stdout);
         let mut programs = messages.lines().filter_map(test_program);
         let (Some(program), None) = (programs.next(), programs.next()) else {
-            bail!("{}: cargo must build one test program for it", self.text);
+            bail!("{text}: cargo must build one test program for it");
         };
         Ok(program)
     }
@@ -95,18 +87,13 @@ impl Test {
             .stderr(Stdio::null())
             .spawn()
             .with_context(|| format!("cannot start {}", executable.display()))?;
-        loop {
-            let taken = begun.elapsed();
-            if let Some(status) = child.try_wait()? {
-                return Ok((status.success(), taken.as_secs_f64()));
-            }
-            if taken > LONGEST {
-                child.kill()?;
-                child.wait()?;
-                return Ok((false, taken.as_secs_f64()));
-            }
-            thread::sleep(POLL);
+        let status = child.wait_timeout(LONGEST)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        if status.is_none() {
+            child.kill()?;
+            child.wait()?;
         }
+        Ok((status.is_some_and(|it| it.success()), seconds))
     }
 }
 

@@ -40,12 +40,8 @@ impl Document {
             at += line.len();
             let line = line.trim_end();
             if line.starts_with(OPENS) {
-                if let Some(block) = open {
-                    bail!(
-                        "{place}: table {} of line {} is open",
-                        block.name,
-                        block.line
-                    );
+                if let Some(Block { name, line, .. }) = open {
+                    bail!("{place}: table {name} of line {line} is open");
                 }
                 open = Some(opening(line, index + 1, at).context(place)?);
             } else if line == CLOSES {
@@ -71,14 +67,10 @@ impl Document {
     pub fn cell(&self, block: &Block, row: &str, column: &str) -> anyhow::Result<String> {
         let (rows, place) = self.column(block, column)?;
         let rows: Vec<_> = rows.filter(|line| line.contains(row)).collect();
-        ensure!(
-            rows.len() == 1,
-            "{} rows of {} contain \"{row}\"",
-            rows.len(),
-            block.name
-        );
+        let (count, name) = (rows.len(), &block.name);
+        ensure!(count == 1, "{count} rows of {name} contain \"{row}\"");
         let found = cells(rows[0]).into_iter().nth(place);
-        found.with_context(|| format!("that row of {} is short", block.name))
+        found.with_context(|| format!("that row of {name} is short"))
     }
 
     /// Name of the row with the largest number in the column of that heading.
@@ -120,10 +112,8 @@ fn opening(marker: &str, line: usize, from: usize) -> anyhow::Result<Block> {
         stamp::check(stamp.trim())?;
     }
     let plain = |it: char| it.is_ascii_lowercase() || it.is_ascii_digit() || it == '-';
-    ensure!(
-        !name.is_empty() && name.chars().all(plain),
-        "\"{name}\" is no name of a table"
-    );
+    let is_name = !name.is_empty() && name.chars().all(plain);
+    ensure!(is_name, "\"{name}\" is no name of a table");
     Ok(Block {
         name: name.to_owned(),
         line,

@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 
 use self::blocks::Document;
-use self::sources::Sources;
 use crate::{files, workspace};
 
 /// For people, after the options.
@@ -40,7 +39,7 @@ pub fn run(check: bool, program: Option<PathBuf>) -> anyhow::Result<()> {
     one_origin_each(&documents, &templates)?;
     let program = program.map_or_else(program::built, Ok)?;
     println!("Figures: of {}", program.display());
-    let sources = Sources::read(&program, &documents)?;
+    let fill = sources::filler(&program, &documents)?;
     let mut differences = Vec::new();
     for document in &documents {
         let mut text = document.text.clone();
@@ -49,8 +48,7 @@ pub fn run(check: bool, program: Option<PathBuf>) -> anyhow::Result<()> {
             let Some(template) = templates.get(&block.name) else {
                 continue;
             };
-            let new = (sources.fill(template))
-                .with_context(|| format!("xtask/figures/{}.md", block.name))?;
+            let new = fill(template).with_context(|| format!("xtask/figures/{}.md", block.name))?;
             let old = &document.text[block.body.clone()];
             if new != old {
                 differences.push(difference(document, block, old, &new));

@@ -27,7 +27,7 @@ pub fn built() -> anyhow::Result<PathBuf> {
 /// What `program` prints with each of these arguments, all at once.
 pub fn printed<const N: usize>(
     program: &Path,
-    arguments: [&[&str]; N],
+    arguments: [&str; N],
 ) -> anyhow::Result<[String; N]> {
     let program = program
         .canonicalize()
@@ -35,9 +35,10 @@ pub fn printed<const N: usize>(
     // It leaves its pages there.
     let folder = workspace().join("target/figures");
     fs::create_dir_all(&folder).context("cannot make a folder to run in")?;
-    let print = |arguments: &[&str]| {
+    let print = |arguments: &str| {
         let mut program = Command::new(&program);
-        toolchain::output(program.args(arguments).current_dir(&folder))
+        program.args(arguments.split_whitespace());
+        toolchain::output(program.current_dir(&folder))
     };
     let texts = thread::scope(|scope| {
         arguments
@@ -58,10 +59,8 @@ pub fn trade(text: &str) -> BTreeMap<String, Vec<String>> {
             return None;
         };
         count.parse::<f64>().ok()?;
-        Some((
-            name.join(" "),
-            [a, b, c, d, count].map(String::clone).to_vec(),
-        ))
+        let cells = [a, b, c, d, count].map(String::clone);
+        Some((name.join(" "), cells.to_vec()))
     };
     text.lines().filter_map(row).collect()
 }
@@ -78,19 +77,16 @@ pub fn worst(limits: &Value, [of, measure, precision, what]: [&str; 4]) -> anyho
     };
     let rows = limits["rows"].as_array().into_iter().flatten().filter(fits);
     let number = |row: &Value, name: &str| row[name].as_f64().unwrap_or(f64::NAN);
+    let used = |it: &Value| number(it, "measured") / number(it, "limit");
     let figures: Vec<_> = match what {
-        "used" => rows
-            .map(|it| number(it, "measured") / number(it, "limit"))
-            .collect(),
+        "used" => rows.map(used).collect(),
         "measured" | "limit" | "count" => rows.map(|it| number(it, what)).collect(),
         _ => bail!("{what} is none of measured, limit, used, count"),
     };
-    ensure!(
-        !figures.is_empty(),
-        "no row fits {of}: {measure}, {precision}"
-    );
+    let count = figures.len();
+    ensure!(count > 0, "no row fits {of}: {measure}, {precision}");
     Ok(match what {
-        "count" => figures.len() as f64,
+        "count" => count as f64,
         _ => figures.into_iter().fold(f64::NEG_INFINITY, f64::max),
     })
 }

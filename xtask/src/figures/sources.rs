@@ -13,71 +13,50 @@ use crate::{budget, faults, files, workspace};
 
 type Map<V> = BTreeMap<String, V>;
 
-/// All that was measured, for templates to be filled in with.
-pub struct Sources {
-    environment: Environment<'static>,
-    figures: minijinja::Value,
-}
-
-impl Sources {
-    /// Reads what is kept, and runs the program.
-    pub fn read(program: &Path, documents: &[Document]) -> anyhow::Result<Self> {
-        let [limits, paper, trade, drop] = program::printed(
-            program,
-            [
-                &["limits", "--json", "-"],
-                &["paper", "--json", "-"],
-                &["trade"],
-                &[],
-            ],
-        )?;
-        let limits: Value = serde_json::from_str(&limits).context("touchdown limits --json -")?;
-        let paper: Value = serde_json::from_str(&paper).context("touchdown paper --json -")?;
-        let measured: Value = serde_json::from_str(&read(budget::MEASURED)?)?;
-        let results = read("benches/peers/RESULTS.md")?;
-        let figures = context! {
-            steps => counts(&read("host-sim/data/instructions.csv")?),
-            functions => counts(&read("host-sim/data/functions.csv")?),
-            parts => by("part", &measured["parts"]),
-            budget => measured,
-            faults => planted()?,
-            limits => limits["rows"],
-            paper => by("item", &paper["rows"]),
-            random_drops => paper["drops"],
-            trade => program::trade(&trade),
-            drop,
-            peers => peers(&results)?,
-        };
-        let mut environment = templates();
-        environment.add_function(
-            "worst",
-            move |of: &str, measure: &str, precision: &str, what: &str| {
-                program::worst(&limits, [of, measure, precision, what]).map_err(refused)
-            },
-        );
-        environment.add_function("claim", move |text: &str| {
-            claim(&results, text).map_err(refused)
-        });
-        let (of_cells, of_rows) = (documents.to_vec(), documents.to_vec());
-        environment.add_function("cell", move |table: &str, row: &str, column: &str| {
-            let cell =
-                stamped(&of_cells, table).and_then(|(it, block)| it.cell(block, row, column));
-            cell.map_err(refused)
-        });
-        environment.add_function("most", move |table: &str, column: &str| {
-            let most = stamped(&of_rows, table).and_then(|(it, block)| it.most(block, column));
-            most.map_err(refused)
-        });
-        Ok(Self {
-            environment,
-            figures,
-        })
-    }
-
-    /// The template with its figures.
-    pub fn fill(&self, template: &str) -> anyhow::Result<String> {
-        Ok(self.environment.render_str(template, &self.figures)?)
-    }
+/// Reads what is kept, and runs the program; what is returned fills in a template with these figures.
+pub fn filler(
+    program: &Path,
+    documents: &[Document],
+) -> anyhow::Result<impl Fn(&str) -> anyhow::Result<String>> {
+    let arguments = ["limits --json -", "paper --json -", "trade", ""];
+    let [limits, paper, trade, drop] = program::printed(program, arguments)?;
+    let limits: Value = serde_json::from_str(&limits).context("touchdown limits --json -")?;
+    let paper: Value = serde_json::from_str(&paper).context("touchdown paper --json -")?;
+    let measured: Value = serde_json::from_str(&read(budget::MEASURED)?)?;
+    let results = read("benches/peers/RESULTS.md")?;
+    let figures = context! {
+        steps => counts(&read("host-sim/data/instructions.csv")?),
+        functions => counts(&read("host-sim/data/functions.csv")?),
+        parts => by("part", &measured["parts"]),
+        budget => measured,
+        faults => planted()?,
+        limits => limits["rows"],
+        paper => by("item", &paper["rows"]),
+        random_drops => paper["drops"],
+        trade => program::trade(&trade),
+        drop,
+        peers => peers(&results)?,
+    };
+    let mut environment = templates();
+    environment.add_function(
+        "worst",
+        move |of: &str, measure: &str, precision: &str, what: &str| {
+            program::worst(&limits, [of, measure, precision, what]).map_err(refused)
+        },
+    );
+    environment.add_function("claim", move |text: &str| {
+        claim(&results, text).map_err(refused)
+    });
+    let (of_cells, of_rows) = (documents.to_vec(), documents.to_vec());
+    environment.add_function("cell", move |table: &str, row: &str, column: &str| {
+        let cell = stamped(&of_cells, table).and_then(|(it, block)| it.cell(block, row, column));
+        cell.map_err(refused)
+    });
+    environment.add_function("most", move |table: &str, column: &str| {
+        let most = stamped(&of_rows, table).and_then(|(it, block)| it.most(block, column));
+        most.map_err(refused)
+    });
+    Ok(move |template: &str| Ok(environment.render_str(template, &figures)?))
 }
 
 /// Lines of a template are lines of the document, those of statements alone left out.
@@ -166,10 +145,8 @@ fn stamped<'a>(
     let block_of = |it: &'a Document| Some((it, it.blocks.iter().find(|it| it.name == table)?));
     let found = documents.iter().find_map(block_of);
     let (document, block) = found.with_context(|| format!("no table is called {table}"))?;
-    ensure!(
-        block.stamped,
-        "{table} is generated: take the figure from its source"
-    );
+    let rule = "is generated: take the figure from its source";
+    ensure!(block.stamped, "{table} {rule}");
     Ok((document, block))
 }
 

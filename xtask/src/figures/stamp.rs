@@ -13,19 +13,13 @@ pub fn check(stamp: &str) -> anyhow::Result<()> {
     let (date, commit, machine, command) = parts().with_context(|| {
         format!("\"{stamp}\" is not `measured DATE at COMMIT on MACHINE; by: COMMAND`")
     })?;
-    let shape = date.replace(|it: char| it.is_ascii_digit(), "0");
-    ensure!(
-        shape == "0000-00-00",
-        "\"{date}\" is no date like 2026-11-21"
-    );
-    ensure!(
-        (7..=40).contains(&commit.len()) && commit.chars().all(|it| it.is_ascii_hexdigit()),
-        "\"{commit}\" is no commit"
-    );
-    ensure!(
-        !machine.is_empty() && !command.is_empty(),
-        "\"{stamp}\" lacks machine or command"
-    );
+    let is_date = date.replace(|it: char| it.is_ascii_digit(), "0") == "0000-00-00";
+    ensure!(is_date, "\"{date}\" is no date like 2026-11-21");
+    let is_hash = commit.chars().all(|it| it.is_ascii_hexdigit());
+    let is_commit = is_hash && (7..=40).contains(&commit.len());
+    ensure!(is_commit, "\"{commit}\" is no commit");
+    let is_whole = !machine.is_empty() && !command.is_empty();
+    ensure!(is_whole, "\"{stamp}\" lacks machine or command");
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Which crates of the workspace there are, and which of one another they use.
 
-use serde::Deserialize;
+use anyhow::Context;
+use serde_json::Value;
 
 use crate::toolchain::{default_cargo, output};
 use crate::workspace;
@@ -16,45 +17,32 @@ pub struct Member {
     pub uses: Vec<String>,
 }
 
-#[derive(Deserialize)]
-struct Metadata {
-    packages: Vec<Package>,
-}
-
-#[derive(Deserialize)]
-struct Package {
-    name: String,
-    manifest_path: String,
-    dependencies: Vec<Dependency>,
-}
-
-#[derive(Deserialize)]
-struct Dependency {
-    kind: Option<String>,
-    path: Option<String>,
-}
-
 /// All crates of the workspace, as cargo sees them.
 pub fn members() -> anyhow::Result<Vec<Member>> {
     let mut cargo = default_cargo();
     cargo.args(["metadata", "--no-deps", "--format-version", "1", "--locked"]);
-    let metadata: Metadata = serde_json::from_str(&output(cargo.current_dir(workspace()))?)?;
-    let members = metadata.packages.iter().map(member);
-    Ok(members.collect())
+    let metadata: Value = serde_json::from_str(&output(cargo.current_dir(workspace()))?)?;
+    let packages = metadata["packages"].as_array().into_iter().flatten();
+    let members = packages.map(|it| member(it).context("cargo metadata"));
+    members.collect()
 }
 
-fn member(package: &Package) -> Member {
-    let manifest = &package.manifest_path;
-    let used = package.dependencies.iter().filter(|it| it.kind.is_none());
+fn member(package: &Value) -> Option<Member> {
+    let dependencies = package["dependencies"].as_array()?.iter();
+    let used = dependencies.filter(|it| it["kind"].is_null());
     let mut uses: Vec<_> = used
-        .filter_map(|it| Some(folder(it.path.as_ref()?)))
+        .filter_map(|it| Some(folder(it["path"].as_str()?)))
         .collect();
     uses.sort();
-    Member {
-        name: package.name.clone(),
-        folder: folder(manifest.trim_end_matches("/Cargo.toml")),
+    Some(Member {
+        name: package["name"].as_str()?.to_owned(),
+        folder: folder(
+            package["manifest_path"]
+                .as_str()?
+                .trim_end_matches("/Cargo.toml"),
+        ),
         uses,
-    }
+    })
 }
 
 fn folder(path: &str) -> String {

@@ -69,17 +69,15 @@ pub fn run(rebuild: bool) -> anyhow::Result<()> {
         let folder = &member.folder;
         let its = budget.crates.get(folder);
         let its = its.with_context(|| format!("{folder} is not in house.toml"))?;
-        for crate_ in beyond(&member, &its.uses) {
-            strays.push(format!("{folder} must not use {crate_}"));
-        }
+        let beyond = beyond(&member, &its.uses).into_iter();
+        strays.extend(beyond.map(|it| format!("{folder} must not use {it}")));
         let folder_of_sources = workspace().join(folder).join("src");
         if !folder_of_sources.is_dir() {
             // The tests: no lines of the product, but the rule of the layers.
             continue;
         }
         let sources = Source::of_crate(&folder_of_sources)?;
-        let lines = sources.iter().map(|it| it.lines).sum();
-        limit(&format!("lines of {folder}"), lines, its.lines);
+        limit(&format!("lines of {folder}"), lines(&sources), its.lines);
         let circles = cycles(&sources);
         let what = format!("import cycles in {folder}");
         limit(&what, circles.len(), its.cycles);
@@ -88,58 +86,45 @@ pub fn run(rebuild: bool) -> anyhow::Result<()> {
         }
         all.extend(sources);
     }
-    let product = all.iter().map(|it| it.lines).sum();
-    limit("lines of the product", product, budget.product_lines);
+    limit("lines of the product", lines(&all), budget.product_lines);
     let functions = longest(&all);
-    let longer = (functions.iter())
-        .filter(|(lines, ..)| *lines > budget.function_lines)
-        .count();
+    let longer = functions.partition_point(|it| it.0 > budget.function_lines);
     let what = format!("functions above {} lines", budget.function_lines);
     limit(&what, longer, budget.longer_functions);
     let names = shared_names(&all);
-    let shared = names.len();
-    limit(
-        "type names in several files",
-        shared,
-        budget.shared_type_names,
-    );
+    let what = "type names in several files";
+    limit(what, names.len(), budget.shared_type_names);
     if rebuild {
         let seconds = rebuild::time()?.as_secs_f64().ceil() as usize;
-        limit(
-            "rebuild, s of processor time",
-            seconds,
-            budget.rebuild_seconds,
-        );
+        let what = "rebuild, s of processor time";
+        limit(what, seconds, budget.rebuild_seconds);
     }
     println!("\nlongest functions");
     for (lines, name, path) in functions.iter().take(SHOWN) {
-        println!("{lines:>6}  {name}  {}", shown(path));
+        let path = path.strip_prefix(workspace()).unwrap_or(path).display();
+        println!("{lines:>6}  {name}  {path}");
     }
     println!("\ntype names in most files");
     for (name, files) in names.iter().take(SHOWN) {
         println!("{files:>6}  {name}");
     }
     broken.extend(strays);
-    ensure!(
-        broken.is_empty(),
-        "against house.toml:\n{}",
-        broken.join("\n")
-    );
+    let broken = broken.join("\n");
+    ensure!(broken.is_empty(), "against house.toml:\n{broken}");
     Ok(())
 }
 
-fn shown(path: &Path) -> std::path::Display<'_> {
-    path.strip_prefix(workspace()).unwrap_or(path).display()
+fn lines(sources: &[Source]) -> usize {
+    sources.iter().map(|it| it.lines).sum()
 }
 
 /// All functions, the longest first.
 fn longest(sources: &[Source]) -> Vec<(usize, &str, &Path)> {
-    let mut all: Vec<_> = (sources.iter())
-        .flat_map(|source| {
-            let functions = source.functions.iter();
-            functions.map(|(name, lines)| (*lines, name.as_str(), source.path.as_path()))
-        })
-        .collect();
+    let mut all = vec![];
+    for source in sources {
+        let functions = source.functions.iter();
+        all.extend(functions.map(|(name, lines)| (*lines, name.as_str(), source.path.as_path())));
+    }
     all.sort_by(|a, b| b.cmp(a));
     all
 }

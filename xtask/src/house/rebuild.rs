@@ -8,7 +8,7 @@ use nix::sys::resource::{UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
 
 use super::layers::{Member, members};
-use crate::faults::{Tree, faults};
+use crate::faults::{faults, tree};
 use crate::test;
 use crate::toolchain::default_cargo;
 use crate::workspace;
@@ -28,16 +28,16 @@ const QUICK: [&str; 4] = [
 /// Crates from elsewhere are not built again after a change: they are those that the tests have built, in profile `dev`.
 /// A test of the program stands for it, as the program itself would take the place of the user's own.
 pub fn time() -> anyhow::Result<Duration> {
-    let tree = Tree::copy(workspace(), &workspace().join("target/rebuild"))?;
+    let copy = workspace().join("target/rebuild");
+    tree::copy(workspace(), &copy)?;
     println!("Rebuild: building the program, then once more with another line in the detector");
     let members = members()?;
-    build(&tree.folder, &members)?;
+    build(&copy, &members)?;
     let faults = faults()?;
     let line = faults.iter().find(|it| it.file.starts_with(DETECTOR));
-    let changed = tree.plant(line.context("no planted fault is in the detector")?)?;
-    let time = build(&tree.folder, &members)?;
-    drop(changed);
-    Ok(time)
+    let line = line.context("no planted fault is in the detector")?;
+    let _changed = tree::plant(line, &copy)?;
+    build(&copy, &members)
 }
 
 /// Processor time that a build in `tree` takes, its `members` as by profile `quick`.
