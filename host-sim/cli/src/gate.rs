@@ -242,8 +242,9 @@ impl Outputs {
     }
 
     /// Gives the files their names, all or none; says `text`, and which.
-    pub fn finish(self, text: &str) -> Result<(), Failure> {
-        self.finish_with(|files| text.to_owned() + files)
+    pub fn finish(self, text: impl FnOnce(Paint) -> String) -> Result<(), Failure> {
+        let text = text(self.paint());
+        self.finish_with(|files| text + files)
     }
 
     /// The same with a text of the lines that say which.

@@ -61,7 +61,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let why = |it: &Checked| Some(format!("plane {}: {}", it.name, it.refused.as_ref()?));
     if let Some(why) = planes.iter().find_map(why) {
         out.leave("--write");
-        out.finish(&text)?;
+        out.finish(|_| text)?;
         return Err(Failure::Check(format!("{}: {why}", shown(&args.recording))));
     }
     text += &record(&mut settings.monitor, date, &planes);
@@ -70,7 +70,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
     }
     out.put("--write", || configuration::record_text(&settings, name))?;
-    out.finish(&text)
+    out.finish(|_| text)
 }
 
 /// What the machine is told, and how its recordings are read: from the scene or the configuration.

@@ -13,7 +13,7 @@ use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::args::LiveArgs;
 use crate::gate::Gate;
-use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, record};
+use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, open_record};
 use touchdown_base::failure::{Failure, STDOUT};
 use touchdown_base::paint::Paint;
 use touchdown_files::link::Port;
@@ -31,7 +31,7 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
     let port = Port::of(&args.port);
     let file = args.json.as_deref().filter(|it| *it != STDOUT);
     Gate::new().claims("--json", file).open()?;
-    let record = file.map(record::open).transpose()?;
+    let record = file.map(open_record).transpose()?;
     let on_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
     let lines = args.json.as_deref() == Some(STDOUT) || !on_terminal;
     let mut session = Session {

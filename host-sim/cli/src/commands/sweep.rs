@@ -52,7 +52,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         let text = format!(
             "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
         );
-        return out.finish(&text);
+        return out.finish(|_| text);
     }
     finish(&plan, write(&plan, &paths, Path::new(&folder))?, out)
 }
@@ -73,11 +73,8 @@ fn gate(folder: &str, json: &Option<String>) -> Gate {
 }
 
 fn finish(plan: &Plan, results: Results, mut out: Outputs) -> Result<(), Failure> {
-    let mut text = table(plan, &results.points, out.paint());
-    if let Some(found) = &results.found {
-        text += &format!("{}\n", found.told());
-    }
     out.put("--json", || results.json)?;
     out.add("--out", results.outputs);
-    out.finish(&text)
+    let found = results.found.map(|it| it.told() + "\n");
+    out.finish(|paint| table(plan, &results.points, paint) + &found.unwrap_or_default())
 }

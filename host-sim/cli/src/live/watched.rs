@@ -11,7 +11,7 @@ use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
-use super::update::{Said, Update};
+use super::watcher::{Said, Update};
 use touchdown_run::detection;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::timebase::Timebase;

@@ -3,7 +3,6 @@
 
 mod line;
 mod machine;
-mod noise;
 mod pipe;
 
 use std::io;
@@ -27,8 +26,6 @@ use touchdown_scene::sensors::Failing;
 use self::line::LineOrder;
 use self::machine::Machine;
 use self::pipe::Pipe;
-
-pub use self::noise::Noise;
 
 /// A block that is later than that is not made up for.
 const LATEST: Duration = Duration::from_millis(100);

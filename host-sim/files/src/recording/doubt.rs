@@ -31,7 +31,6 @@ const NEAR: f64 = 0.1;
 /// Largest values so far.
 #[derive(Clone, Debug, Default)]
 pub struct Doubt {
-    file: String,
     clearance: f64,
     spin: f64,
     /// Of the sensors, m.
@@ -46,10 +45,9 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    /// Before the first row of `file`.
-    pub fn new(file: &str, scene: &Scene) -> Self {
+    /// Before the first row.
+    pub fn new(scene: &Scene) -> Self {
         Self {
-            file: file.to_owned(),
             clearance: scene.retainer.clearance,
             spin: scene.rotor.spin,
             range: scene.sensors.range,
@@ -123,7 +121,6 @@ impl Doubt {
                 "it has plane a alone, the scene two planes: falls and impacts are found later";
             warnings.push(rule.to_owned());
         }
-        let of_file = |it| format!("{}: {it}", self.file);
-        warnings.into_iter().map(of_file).collect()
+        warnings
     }
 }

@@ -5,7 +5,6 @@ mod doubt;
 mod layout;
 mod mapping;
 mod pick;
-mod remarks;
 mod resample;
 mod text;
 mod unit;
@@ -20,14 +19,13 @@ pub use mapping::Mapping;
 use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
 use doubt::Doubt;
 use layout::Layout;
-use remarks::Remarks;
 use resample::Resampled;
 use text::{Head, TextRows};
 
 use touchdown_core::learnt::Learnt;
 
-use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate, of_own_axes};
-use touchdown_base::input_error::{InputError, UTF_16};
+use crate::stream::{Account, Columns, Even, Records, Row, Stamped, is_rate, of_own_axes};
+use touchdown_base::input_error::InputError;
 use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
 
@@ -59,8 +57,7 @@ pub struct Recording {
     /// Bytes of the file.
     pub size: u64,
     rows: Rows,
-    meter: Meter,
-    remarks: Remarks,
+    account: Account,
     doubt: Doubt,
 }
 
@@ -72,10 +69,15 @@ impl Recording {
             let (bytes, size) = InputError::open(path)?;
             return Self::of_bytes(&file, bytes, size, reading, scene);
         }
-        let mut source = Source::new(&file, 0, reading, scene);
-        let (dat, size) = comtrade::open(path, &source.meter)?;
-        source.size = size;
-        source.comtrade(dat)
+        let account = Account::of(file);
+        let (dat, size) = comtrade::open(path, &account)?;
+        Source {
+            account,
+            size,
+            reading,
+            scene,
+        }
+        .comtrade(dat)
     }
 
     /// Reads the `size` bytes of the file `file`: a text, or by its name both parts of COMTRADE in one.
@@ -86,15 +88,17 @@ impl Recording {
         reading: &Reading,
         scene: &Scene,
     ) -> Result<Self, InputError> {
-        let source = Source::new(file, size, reading, scene);
+        let source = Source {
+            account: Account::of(file),
+            size,
+            reading,
+            scene,
+        };
         if is_combined(Path::new(file)) {
-            let dat = combined(file, Box::new(BufReader::new(bytes)), &source.meter)?;
+            let dat = combined(Box::new(BufReader::new(bytes)), &source.account)?;
             return source.comtrade(dat);
         }
-        let head = Head::read(file, bytes)?;
-        if head.is_utf_16() {
-            return Err(InputError::at_line(file, 1, UTF_16));
-        }
+        let head = Head::read(bytes, &source.account)?;
         match &reading.mapping {
             Some(mapping) => source.mapped(head, mapping),
             None => source.stream(head),
@@ -103,13 +107,14 @@ impl Recording {
 
     /// Bytes read so far.
     pub fn bytes_read(&self) -> u64 {
-        self.meter.bytes()
+        self.account.bytes()
     }
 
     /// What is worth a warning so far; after the last row, also what makes one doubt.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.remarks.take();
-        warnings.extend(self.doubt.warnings());
+        let mut warnings = self.account.take_warnings();
+        let doubts = self.doubt.warnings().into_iter();
+        warnings.extend(doubts.map(|it| format!("{}: {it}", self.account.file)));
         warnings
     }
 }
@@ -130,33 +135,19 @@ impl Iterator for Recording {
 
 /// What a recording of any kind is read with.
 struct Source<'a> {
-    file: &'a str,
+    account: Account,
     size: u64,
     reading: &'a Reading,
     scene: &'a Scene,
-    meter: Meter,
-    remarks: Remarks,
 }
 
-impl<'a> Source<'a> {
-    fn new(file: &'a str, size: u64, reading: &'a Reading, scene: &'a Scene) -> Self {
-        Self {
-            file,
-            size,
-            reading,
-            scene,
-            meter: Meter::default(),
-            remarks: Remarks::default(),
-        }
-    }
-
+impl Source<'_> {
     fn mapped(
         self,
         head: Head<impl Read + 'static>,
         mapping: &Mapping,
     ) -> Result<Recording, InputError> {
-        let (sensors, remarks) = (&self.scene.sensors, &self.remarks);
-        let mut rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
+        let mut rows = TextRows::new(head, mapping, &self.scene.sensors, &self.account)?;
         let (header, format) = (rows.layout.before.1.max(1), format_of(&rows.layout));
         let (columns, rate) = (rows.pick.columns(), rows.rate);
         let rows = iter::from_fn(move || rows.read().transpose());
@@ -168,7 +159,7 @@ impl<'a> Source<'a> {
 
     fn stream(self, head: Head<impl Read + 'static>) -> Result<Recording, InputError> {
         let found = head.layout(&Default::default());
-        let records = Records::new(self.file, head.whole(0), &self.meter);
+        let records = Records::new(head.whole(0), &self.account);
         let records = records.map_err(|error| match &found {
             Ok(layout) => error.and(format!(
                 "; --columns FILE.toml says which column is what; {}",
@@ -176,7 +167,7 @@ impl<'a> Source<'a> {
             )),
             Err(_) => error,
         })?;
-        let (columns, learnt) = (records.columns, records.learnt.clone());
+        let (columns, learnt) = (records.columns, self.account.learnt.clone());
         let is_resampled = self.reading.resample.is_some();
         let recording = self.paced(columns, records, None, 1)?;
         // Another rate would make something else of it.
@@ -190,7 +181,7 @@ impl<'a> Source<'a> {
 
     fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
         let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
-        let mut rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
+        let mut rows = ComtradeRows::new(dat, mapping, &sensors)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
             let rates: Vec<_> = cfg
@@ -202,7 +193,7 @@ impl<'a> Source<'a> {
                 "the sample rate changes: {}; --resample RATE makes one of them and says so",
                 rates.join(", ")
             );
-            return Err(InputError::of_file(&rows.dat.file, rule));
+            return Err(rows.dat.account.of_file(rule));
         }
         let is_episode = cfg.is_episode && mapping.is_none();
         let format = format!("COMTRADE {}, {} data", cfg.year, cfg.data);
@@ -230,13 +221,13 @@ impl<'a> Source<'a> {
         rate: Option<f64>,
         header: u64,
     ) -> Result<Recording, InputError> {
-        let file = self.file;
+        let account = self.account;
         let (rows, rate, start): (Rows, f64, f64) = if let Some(wanted) = self.reading.resample {
             if columns.edges != [false; 2] {
                 let rule = "counted edges cannot be resampled";
-                return Err(InputError::of_file(file, rule));
+                return Err(account.of_file(rule));
             }
-            let resampled = Resampled::new(file, Box::new(stamped), wanted, &self.remarks)?;
+            let resampled = Resampled::new(&account, Box::new(stamped), wanted)?;
             let start = resampled.start;
             (Box::new(resampled), wanted, start)
         } else if let Some(given) = rate {
@@ -246,7 +237,7 @@ impl<'a> Source<'a> {
                      of it and says so",
                     Number(given)
                 );
-                return Err(InputError::of_file(file, rule));
+                return Err(account.of_file(rule));
             }
             let mut stamped = stamped.peekable();
             let start = match stamped.peek() {
@@ -259,7 +250,7 @@ impl<'a> Source<'a> {
                 start,
             )
         } else {
-            let even = Even::of_rows(file, stamped, header)?;
+            let even = Even::of_rows(&account, stamped, header)?;
             let (rate, start) = (even.rate, even.start());
             (Box::new(even), rate, start)
         };
@@ -272,9 +263,8 @@ impl<'a> Source<'a> {
             learnt: None,
             size: self.size,
             rows,
-            meter: self.meter,
-            remarks: self.remarks,
-            doubt: Doubt::new(file, self.scene),
+            account,
+            doubt: Doubt::new(self.scene),
         })
     }
 }

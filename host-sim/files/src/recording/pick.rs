@@ -3,9 +3,8 @@
 use touchdown_core::sample::CHANNELS;
 
 use super::mapping::{Axes, Column, Mapping, POSITIONS};
-use super::remarks::Remarks;
 use super::unit::{Displacement, Speed, Time, split};
-use crate::stream::{Columns, Row};
+use crate::stream::{Account, Columns, Row};
 use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
 
 /// A column as the file has it.
@@ -64,7 +63,7 @@ impl Pick {
         mapping: &Mapping,
         found: &[Heading],
         sensors: &SensorsConfig,
-        remarks: &Remarks,
+        account: &Account,
     ) -> Result<Self, String> {
         let mut positions = Vec::new();
         for (name, column) in POSITIONS.iter().zip(mapping.positions()) {
@@ -77,7 +76,7 @@ impl Pick {
                 && mine != theirs
             {
                 let theirs = told.unwrap_or_default();
-                remarks.warn(format!(
+                account.warn(format!(
                     "{name}: the file says {theirs:?}, --columns another unit, which is taken"
                 ));
             }

@@ -1,7 +1,6 @@
 //! Rows at a rate that they do not have: linear between neighbours, and no value across a gap.
 
-use super::remarks::Remarks;
-use crate::stream::{Row, Stamped, median_interval};
+use crate::stream::{Account, Row, Stamped, median_interval};
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::Number;
 
@@ -23,7 +22,7 @@ type StampedRows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
 
 /// Rows at a rate of choice.
 pub struct Resampled {
-    file: String,
+    account: Account,
     rows: StampedRows,
     /// The rows about the next time.
     from: Stamped,
@@ -37,26 +36,20 @@ pub struct Resampled {
     made: u64,
     gaps: u64,
     empty: u64,
-    remarks: Remarks,
 }
 
 impl Resampled {
-    /// Of `rows` of the file `file`, at `rate` (Hz), from the first of them on.
-    pub fn new(
-        file: &str,
-        mut rows: StampedRows,
-        rate: f64,
-        remarks: &Remarks,
-    ) -> Result<Self, InputError> {
+    /// Of `rows`, at `rate` (Hz), from the first of them on.
+    pub fn new(account: &Account, mut rows: StampedRows, rate: f64) -> Result<Self, InputError> {
         let Some(from) = rows.next().transpose()? else {
-            return Err(InputError::of_file(file, "there are no rows"));
+            return Err(account.of_file("there are no rows"));
         };
         let start = from.stamp.time;
         let ahead = (&mut rows).take(LOOK_AHEAD);
         let ahead = ahead.collect::<Result<Vec<_>, _>>()?;
         let usual = median_interval(start, ahead.iter().map(|it| it.stamp.time));
         let mut resampled = Self {
-            file: file.to_owned(),
+            account: account.clone(),
             rows: Box::new(ahead.into_iter().map(Ok).chain(rows)),
             from,
             to: None,
@@ -67,18 +60,17 @@ impl Resampled {
             made: 0,
             gaps: 0,
             empty: 0,
-            remarks: remarks.clone(),
         };
         resampled.to = resampled.read()?;
         if resampled.to.is_none() {
             let rule = "one row alone has no sample rate";
-            return Err(InputError::at_line(file, from.line, rule));
+            return Err(account.at_line(from.line, rule));
         }
         if rate * usual > FINEST {
             let rule = format!(
                 "most rows are {usual:.3e} s apart: at {rate} Hz that is more than {FINEST} samples a row, most of them made up"
             );
-            return Err(InputError::of_file(file, rule));
+            return Err(account.of_file(rule));
         }
         Ok(resampled)
     }
@@ -96,7 +88,7 @@ impl Resampled {
                 Number(time),
                 Number(last)
             );
-            return Err(InputError::at_line(&self.file, next.line, rule));
+            return Err(self.account.at_line(next.line, rule));
         }
         if time - last > LONGEST_GAP {
             let rule = format!(
@@ -104,7 +96,7 @@ impl Resampled {
                 Number(last),
                 Number(time)
             );
-            return Err(InputError::at_line(&self.file, next.line, rule));
+            return Err(self.account.at_line(next.line, rule));
         }
         if time - last > GAP * self.usual {
             self.gaps += 1;
@@ -136,10 +128,10 @@ impl Resampled {
             gaps => format!("; {gaps} gaps, in which nothing is made up"),
         };
         let times = self.from.stamp.time - self.start;
-        self.remarks.warn(format!(
+        self.account.warn(format!(
             "{}: resampled, linear between neighbours, from {} rows at {:.6} Hz on average to {} samples at {} Hz, \
              {} of them without a value{gaps}",
-            self.file,
+            self.account.file,
             self.read,
             (self.read - 1) as f64 / times,
             self.made,

@@ -4,6 +4,7 @@
 //! ball bearing, `[,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]`: edges so
 //! far (which may wrap at 65536) and the time since the last one. An episode of the drop log has `[,learnt]` at the end.
 
+mod account;
 mod bounded;
 mod clock;
 mod even;
@@ -13,13 +14,14 @@ mod row;
 mod survey;
 mod write;
 
-pub use bounded::{Bounded, LONGEST, Meter};
+pub use account::Account;
+pub use bounded::{Bounded, LONGEST};
 pub use clock::{Clock, LOOK_AHEAD, Stamp};
 pub use even::{Even, is_rate};
 pub(crate) use learnt::LEARNT;
 pub use learnt::{of_field, to_field};
 pub use read::Records;
-pub(crate) use read::{csv_error, is_missing};
+pub(crate) use read::is_missing;
 pub use row::{Pulses, Row, Stamped};
 pub(crate) use survey::median_interval;
 pub use write::StreamWriter;

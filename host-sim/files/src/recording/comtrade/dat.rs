@@ -5,7 +5,7 @@ use std::io::Read;
 use csv::ByteRecord;
 
 use super::cfg::{Cfg, Data};
-use crate::stream::{Bounded, Meter, csv_error};
+use crate::stream::{Account, Bounded};
 use touchdown_base::input_error::{InputError, reason};
 
 /// End of a text, as DOS has it.
@@ -26,10 +26,9 @@ pub struct Sample {
 
 /// Reads samples.
 pub struct Dat<R> {
-    pub file: String,
+    pub account: Account,
     pub cfg: Cfg,
     source: Source<R>,
-    meter: Meter,
     /// Of the sample that was read last: analog in their units, then digital 0 or 1; NaN where there is none.
     pub values: Vec<f64>,
     /// Records so far.
@@ -42,10 +41,10 @@ enum Source<R> {
 }
 
 impl<R: Read> Dat<R> {
-    /// Reads `bytes`, of the file `file`, as `cfg` says; `meter` counts them.
-    pub fn new(file: &str, cfg: Cfg, bytes: R, meter: &Meter) -> Self {
+    /// Reads `bytes`, of which `account` is, as `cfg` says.
+    pub fn new(cfg: Cfg, bytes: R, account: Account) -> Self {
         let source = if cfg.data == Data::Ascii {
-            let bytes = Bounded::new(bytes, meter);
+            let bytes = Bounded::new(bytes, &account);
             let mut reader = csv::ReaderBuilder::new();
             let reader = reader
                 .has_headers(false)
@@ -57,18 +56,17 @@ impl<R: Read> Dat<R> {
             Source::Binary(bytes, Vec::new())
         };
         Self {
-            file: file.to_owned(),
+            account,
             values: vec![f64::NAN; cfg.analog.len() + cfg.digital.len()],
             cfg,
             source,
-            meter: meter.clone(),
             records: 0,
         }
     }
 
     /// A flaw of the record that was read last.
     pub fn flaw(&self, rule: impl Into<String>) -> InputError {
-        InputError::at_line(&self.file, self.records, rule)
+        self.account.at_line(self.records, rule)
     }
 
     /// The next sample; `None` at the end.
@@ -76,7 +74,7 @@ impl<R: Read> Dat<R> {
         let sample = match &mut self.source {
             Source::Text(reader, record) => {
                 let read = reader.read_byte_record(record);
-                if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
+                if !read.map_err(|error| self.account.csv_error(&error))? {
                     return Ok(None);
                 }
                 if record.len() == 1 && record[0].first() == Some(&END_OF_FILE) {
@@ -89,8 +87,8 @@ impl<R: Read> Dat<R> {
                 let size = self.cfg.bytes();
                 record.clear();
                 let read = bytes.take(size as u64).read_to_end(record);
-                let read = read.map_err(|error| InputError::of_file(&self.file, reason(&error)))?;
-                self.meter.add(read as u64);
+                let read = read.map_err(|error| self.account.of_file(reason(&error)))?;
+                self.account.add(read as u64);
                 if read == 0 {
                     return Ok(None);
                 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
-use crate::stream::Meter;
+use crate::stream::Account;
 use touchdown_base::input_error::{InputError, reason};
 
 /// Larger than any configuration, bytes.
@@ -28,15 +28,16 @@ fn ends(path: &Path, ending: &str) -> bool {
 }
 
 /// Opens the recording that `path` is one of two files of; also the bytes of its data.
-pub fn open(path: &Path, meter: &Meter) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
+pub fn open(path: &Path, account: &Account) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
     let cfg_path = beside(path, "cfg")?;
     let text = text_of(&InputError::read_bytes(&cfg_path, LARGEST_CFG)?);
     let cfg = Cfg::parse(&text)
         .map_err(|(line, rule)| InputError::at_line(&cfg_path.display().to_string(), line, rule))?;
     let dat_path = beside(path, "dat")?;
     let (file, size) = InputError::open(&dat_path)?;
-    let name = dat_path.display().to_string();
-    Ok((Dat::new(&name, cfg, Box::new(file), meter), size))
+    let mut account = account.clone();
+    account.file = dat_path.display().to_string();
+    Ok((Dat::new(cfg, Box::new(file), account), size))
 }
 
 /// The file of this ending beside `path`, in whichever case it is written.
@@ -56,12 +57,11 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
 
 /// A recording in one file: sections begin with lines as `--- file type: CFG ---`.
 pub fn combined(
-    name: &str,
     bytes: Box<dyn BufRead>,
-    meter: &Meter,
+    account: &Account,
 ) -> Result<Dat<Box<dyn Read>>, InputError> {
     let mut lines = Sections {
-        name,
+        account,
         bytes,
         line: 0,
     };
@@ -70,7 +70,7 @@ pub fn combined(
     loop {
         let Some(kind) = section else {
             let rule = "has no section \"--- file type: DAT ... ---\" after one of CFG";
-            return Err(InputError::of_file(name, rule));
+            return Err(account.of_file(rule));
         };
         if kind == "CFG" {
             at = lines.line;
@@ -78,15 +78,14 @@ pub fn combined(
             cfg = Some(text);
             section = next;
         } else if let (true, Some(text)) = (kind.starts_with("DAT"), &cfg) {
-            let cfg = Cfg::parse(text)
-                .map_err(|(line, rule)| InputError::at_line(name, at + line, rule))?;
+            let cfg = Cfg::parse(text).map_err(|(line, rule)| account.at_line(at + line, rule))?;
             let told = kind["DAT".len()..].split(':').next().unwrap_or("").trim();
             if told.parse() != Ok(cfg.data) {
                 let rule =
                     format!("the section's data are {told:?}, those of the configuration are not");
-                return Err(InputError::at_line(name, lines.line, rule));
+                return Err(account.at_line(lines.line, rule));
             }
-            return Ok(Dat::new(name, cfg, Box::new(lines.bytes), meter));
+            return Ok(Dat::new(cfg, lines.bytes, account.clone()));
         } else {
             section = lines.skip_to_section()?;
         }
@@ -94,7 +93,7 @@ pub fn combined(
 }
 
 struct Sections<'a> {
-    name: &'a str,
+    account: &'a Account,
     bytes: Box<dyn BufRead>,
     line: u64,
 }
@@ -105,7 +104,7 @@ impl Sections<'_> {
         let mut line = Vec::new();
         let mut some = (&mut self.bytes).take(crate::stream::LONGEST);
         let read = some.read_until(b'\n', &mut line);
-        let read = read.map_err(|error| InputError::of_file(self.name, reason(&error)))?;
+        let read = read.map_err(|error| self.account.of_file(reason(&error)))?;
         self.line += u64::from(line.ends_with(b"\n"));
         Ok((read > 0).then(|| text_of(&line)))
     }
@@ -129,7 +128,7 @@ impl Sections<'_> {
             text += &line;
             if text.len() as u64 > LARGEST_CFG {
                 let rule = "the configuration is larger than any";
-                return Err(InputError::at_line(self.name, self.line, rule));
+                return Err(self.account.at_line(self.line, rule));
             }
         }
         Ok((text, None))

@@ -16,7 +16,6 @@ use cfg::Data;
 
 use super::mapping::Mapping;
 use super::pick::{Heading, Pick, by_name, list};
-use super::remarks::Remarks;
 use crate::stream::{Stamp, Stamped};
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::Number;
@@ -43,10 +42,9 @@ impl<R: Read> ComtradeRows<R> {
         dat: Dat<R>,
         mapping: Option<&Mapping>,
         sensors: &SensorsConfig,
-        remarks: &Remarks,
     ) -> Result<Self, InputError> {
-        let cfg = &dat.cfg;
-        let fail = |rule: String| InputError::of_file(&dat.file, rule);
+        let (cfg, account) = (&dat.cfg, &dat.account);
+        let fail = |rule: String| account.of_file(rule);
         let analog = cfg.analog.iter().map(|it| &it.heading);
         let found: Vec<Heading> = analog.chain(&cfg.digital).cloned().collect();
         let named;
@@ -63,21 +61,21 @@ impl<R: Read> ComtradeRows<R> {
             let rule = "COMTRADE has its own rate: leave out [time] of --columns";
             return Err(fail(rule.to_owned()));
         }
-        let pick = Pick::new(mapping, &found, sensors, remarks).map_err(fail)?;
+        let pick = Pick::new(mapping, &found, sensors, account).map_err(fail)?;
         for channel in pick.used().iter().filter_map(|it| cfg.analog.get(*it)) {
             if channel.skew != 0.0 {
-                remarks.warn(format!(
+                account.warn(format!(
                     "{}: channel {} is sampled {} us late, which is not undone",
-                    dat.file,
+                    account.file,
                     channel.heading.text,
                     Number(channel.skew)
                 ));
             }
         }
         if cfg.start.is_none() {
-            remarks.warn(format!(
+            account.warn(format!(
                 "{}: the dates of first sample and trigger cannot be read; time 0 is the first sample",
-                dat.file
+                account.file
             ));
         }
         Ok(Self {
