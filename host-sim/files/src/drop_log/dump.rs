@@ -1,6 +1,7 @@
-//! A dump of the flash, or a file of one episode.
+//! A log: a dump of the flash, a file of one episode, or what is fetched from the controller over the link.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use embedded_storage::nor_flash::ReadNorFlash;
@@ -10,11 +11,15 @@ use touchdown_protocol::log::block::{BLOCK_BYTES, Page};
 use touchdown_protocol::log::counters::Counters;
 
 use super::episode::{Completeness, Episode};
+use crate::link::{Client, LinkError, Port};
 use crate::ram_nor::RamNor;
 use touchdown_base::input_error::InputError;
+use touchdown_base::progress::Progress;
 
 /// Larger than any flash that the log is kept on, bytes.
 const LARGEST: u64 = 256 << 20;
+/// Episodes in it.
+const MOST: u32 = 5_461;
 
 /// All that a log holds.
 #[derive(Clone, Debug, Serialize)]
@@ -33,6 +38,36 @@ pub fn read(path: &str) -> Result<Dump, InputError> {
         return Err(InputError::of_file(path, rule));
     }
     Ok(dump)
+}
+
+/// Numbers of episodes.
+pub type EpisodeRange = RangeInclusive<u32>;
+
+/// Fetches those of all episodes that are wanted and there, of which one takes 5 s at 115 200 baud, and the lifetime
+/// counters.
+pub fn fetch(
+    port: &Port,
+    wanted: impl FnOnce(EpisodeRange) -> EpisodeRange,
+) -> Result<Dump, LinkError> {
+    let mut client = Client::new(port.open()?);
+    client.hello()?;
+    let counters = client.lifetime()?;
+    let mut episodes = Vec::new();
+    let Some((first, last)) = client.episodes()? else {
+        return Ok(Dump { counters, episodes });
+    };
+    // Some between may be gone; what is beyond the largest flash is never there.
+    for number in wanted(first.max(last.saturating_sub(MOST - 1))..=last) {
+        let mut progress = None;
+        let bytes = client.episode(number, |done, total| {
+            progress
+                .get_or_insert_with(|| Progress::of_jobs("fetching", total.into()))
+                .at(done.into());
+        })?;
+        let episode = bytes.map(|bytes| Episode::of(&bytes));
+        episodes.extend(episode.filter(|it| it.report.sequence.is_some()));
+    }
+    Ok(Dump { counters, episodes })
 }
 
 impl Dump {

@@ -67,15 +67,12 @@ pub struct TextHints {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, strum::Display)]
 #[repr(u8)]
 pub enum Delimiter {
-    /// `,`
     #[serde(rename = ",", alias = "comma")]
     #[strum(serialize = "commas")]
     Comma = b',',
-    /// `;`
     #[serde(rename = ";", alias = "semicolon")]
     #[strum(serialize = "semicolons")]
     Semicolon = b';',
-    /// A tabulator.
     #[serde(rename = "\t", alias = "tab")]
     #[strum(serialize = "tabs")]
     Tab = b'\t',
@@ -84,10 +81,8 @@ pub enum Delimiter {
 /// Between whole and fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Decimal {
-    /// `.`
     #[serde(rename = ".", alias = "point")]
     Point,
-    /// `,`
     #[serde(rename = ",", alias = "comma")]
     Comma,
 }
@@ -96,10 +91,8 @@ pub enum Decimal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[repr(u8)]
 pub enum Comment {
-    /// `#`
     #[serde(rename = "#")]
     Hash = b'#',
-    /// `%`
     #[serde(rename = "%")]
     Percent = b'%',
 }
@@ -172,10 +165,8 @@ fn half() -> f64 {
 impl Mapping {
     /// Reads the mapping at `path`.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::parse(
-            &path.display().to_string(),
-            &InputError::read(path, LARGEST_TOML)?,
-        )
+        let text = InputError::read(path, LARGEST_TOML)?;
+        Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads the mapping `text`; errors name it `name`.

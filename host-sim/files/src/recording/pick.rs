@@ -29,7 +29,8 @@ impl Heading {
 pub struct Pick {
     positions: Vec<Affine>,
     speed: Option<Affine>,
-    levitated: Option<Threshold>,
+    /// Column and threshold of the levitation signal, and whether it is on below that.
+    levitated: Option<(usize, f64, bool)>,
     /// The column of time and the power of ten of its seconds.
     pub time: Option<(usize, i32)>,
     /// Angle of each plane's sensors, where the columns are along them, rad.
@@ -50,13 +51,6 @@ impl Affine {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Threshold {
-    column: usize,
-    above: f64,
-    reversed: bool,
-}
-
 impl Pick {
     /// Finds the columns of `mapping` among `found`; else the rule that is broken.
     pub fn new(
@@ -68,33 +62,29 @@ impl Pick {
         let mut positions = Vec::new();
         for (name, column) in POSITIONS.iter().zip(mapping.positions()) {
             let Some(it) = column else { continue };
-            let index = find(&it.column, name, found)?;
-            let told = found[index].parts().1;
-            let read = told.and_then(|unit| unit.parse::<Displacement>().ok());
-            let unit = it.unit.or(read);
-            if let (Some(mine), Some(theirs)) = (it.unit, read)
-                && mine != theirs
+            let column = find(&it.column, name, found)?;
+            let unit = unit(it.unit, name, &found[column], "um")?;
+            if let Some(theirs) = found[column].parts().1
+                && Displacement::try_from(theirs.to_owned()).is_ok_and(|it| it != unit)
             {
-                let theirs = told.unwrap_or_default();
                 account.warn(format!(
                     "{name}: the file says {theirs:?}, --columns another unit, which is taken"
                 ));
             }
             let scale = match (unit, it.sensitivity) {
-                (Some(Displacement::Length(metres)), None) => metres,
-                (Some(Displacement::Volts(volts)), Some(per_metre)) => volts / per_metre.0,
-                (Some(Displacement::Volts(_)), None) => {
+                (Displacement::Length(metres), None) => metres,
+                (Displacement::Volts(volts), Some(per_metre)) => volts / per_metre.0,
+                (Displacement::Volts(_), None) => {
                     return Err(format!(
                         "{name} is in volts: it needs a sensitivity, as \"200 mV/mil\""
                     ));
                 }
-                (Some(Displacement::Length(_)), Some(_)) => {
+                (Displacement::Length(_), Some(_)) => {
                     return Err(format!("{name} is a length: a sensitivity is for volts"));
                 }
-                (None, _) => return Err(no_unit(name, &found[index], "um")),
             };
             positions.push(Affine {
-                column: index,
+                column,
                 zero: it.offset,
                 factor: if it.reversed { -scale } else { scale },
             });
@@ -102,28 +92,21 @@ impl Pick {
         let mut speed = None;
         if let Some(it) = &mapping.speed {
             let column = find(&it.column, "speed", found)?;
-            let read = found[column].parts().1.and_then(|unit| unit.parse().ok());
-            let Some(Speed(scale)) = it.unit.or(read) else {
-                return Err(no_unit("speed", &found[column], "rpm"));
-            };
+            let Speed(scale) = unit(it.unit, "speed", &found[column], "rpm")?;
             speed = Some(Affine {
                 column,
                 zero: 0.0,
                 factor: if it.reversed { -scale } else { scale },
             });
         }
-        let mut levitated = None;
-        if let Some(it) = &mapping.levitated {
-            levitated = Some(Threshold {
-                column: find(&it.column, "levitated", found)?,
-                above: it.above,
-                reversed: it.reversed,
-            });
-        }
+        let levitated = mapping.levitated.as_ref().map(|it| {
+            let column = find(&it.column, "levitated", found)?;
+            Ok::<_, String>((column, it.above, it.reversed))
+        });
         let pick = Self {
             positions,
             speed,
-            levitated,
+            levitated: levitated.transpose()?,
             time: time(mapping, found)?,
             turned: (mapping.axes == Axes::Sensors).then_some(sensors.mounting_angle),
         };
@@ -161,7 +144,7 @@ impl Pick {
         let positions = self.positions.iter().map(|it| it.column);
         let time = self.time.map(|it| ("time", it.0));
         let speed = self.speed.map(|it| ("speed", it.column));
-        let levitated = self.levitated.map(|it| ("levitated", it.column));
+        let levitated = self.levitated.map(|it| ("levitated", it.0));
         let all = POSITIONS.into_iter().zip(positions).chain(time);
         all.chain(speed).chain(levitated)
     }
@@ -187,9 +170,9 @@ impl Pick {
             time,
             positions,
             spin: spin.filter(|it| !it.is_nan()),
-            levitated: self.levitated.and_then(|it| {
-                let value = values[it.column];
-                (!value.is_nan()).then_some((value > it.above) != it.reversed)
+            levitated: self.levitated.and_then(|(column, above, reversed)| {
+                let value = values[column];
+                (!value.is_nan()).then_some((value > above) != reversed)
             }),
             edges: [None; 2],
         }
@@ -202,10 +185,7 @@ fn time(mapping: &Mapping, found: &[Heading]) -> Result<Option<(usize, i32)>, St
         return Ok(None);
     };
     let index = find(column, "time", found)?;
-    let read = found[index].parts().1.and_then(|unit| unit.parse().ok());
-    let Some(Time(power)) = it.unit.or(read) else {
-        return Err(no_unit("time", &found[index], "s"));
-    };
+    let Time(power) = unit(it.unit, "time", &found[index], "s")?;
     Ok(Some((index, power)))
 }
 
@@ -248,9 +228,18 @@ fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String>
     ))
 }
 
-fn no_unit(what: &str, heading: &Heading, example: &str) -> String {
+/// The unit that is given, or else that of the column; `example` is one that could be given.
+fn unit<T: TryFrom<String>>(
+    given: Option<T>,
+    what: &str,
+    heading: &Heading,
+    example: &str,
+) -> Result<T, String> {
+    let told = || heading.parts().1?.to_owned().try_into().ok();
     let named = &heading.text;
-    format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+    given.or_else(told).ok_or_else(|| {
+        format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+    })
 }
 
 /// Columns that are named as in a stream: ax, ay, bx, by, speed, levitated.
