@@ -24,9 +24,10 @@ use text::{Head, TextRows};
 
 use touchdown_core::learnt::Learnt;
 
-use crate::stream::{Account, Columns, Even, Records, Row, Stamped, is_rate, of_own_axes};
+use crate::stream::{
+    Account, Columns, Even, Records, Row, Stamped, is_rate, not_a_rate, of_own_axes,
+};
 use touchdown_base::input_error::InputError;
-use touchdown_base::plain::Number;
 use touchdown_scene::Scene;
 
 /// How a recording is to be read.
@@ -161,10 +162,10 @@ impl Source<'_> {
         let found = head.layout(&Default::default());
         let records = Records::new(head.whole(0), &self.account);
         let records = records.map_err(|error| match &found {
-            Ok(layout) => error.and(format!(
-                "; --columns FILE.toml says which column is what; {}",
-                pick::list(&layout.columns)
-            )),
+            Ok(layout) => {
+                let rule = "; --columns FILE.toml says which column is what; ".to_owned();
+                error.and(rule + &pick::list(&layout.columns))
+            }
             Err(_) => error,
         })?;
         let (columns, learnt) = (records.columns, self.account.learnt.clone());
@@ -184,15 +185,13 @@ impl Source<'_> {
         let mut rows = ComtradeRows::new(dat, mapping, &sensors)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
-            let rates: Vec<_> = cfg
-                .rates
-                .iter()
-                .map(|(rate, last)| format!("{rate} Hz up to sample {last}"))
-                .collect();
-            let rule = format!(
-                "the sample rate changes: {}; --resample RATE makes one of them and says so",
-                rates.join(", ")
+            let rates = cfg.rates.iter();
+            let rates = rates.map(|(rate, last)| format!("{rate} Hz up to sample {last}"));
+            let (rates, rule) = (
+                rates.collect::<Vec<_>>(),
+                "--resample RATE makes one of them and says so",
             );
+            let rule = format!("the sample rate changes: {}; {rule}", rates.join(", "));
             return Err(rows.dat.account.of_file(rule));
         }
         let is_episode = cfg.is_episode && mapping.is_none();
@@ -232,23 +231,15 @@ impl Source<'_> {
             (Box::new(resampled), wanted, start)
         } else if let Some(given) = rate {
             if !is_rate(given) {
-                let rule = format!(
-                    "the sample rate must be 100 to 200000 Hz, is {} Hz; --resample RATE makes another \
-                     of it and says so",
-                    Number(given)
-                );
+                let rule = "--resample RATE makes another of it and says so";
+                let rule = format!("{}; {rule}", not_a_rate(given));
                 return Err(account.of_file(rule));
             }
             let mut stamped = stamped.peekable();
-            let start = match stamped.peek() {
-                Some(Ok(first)) => first.stamp.time,
-                _ => 0.0,
-            };
-            (
-                Box::new(stamped.map(|it| it.map(|it| it.row))),
-                given,
-                start,
-            )
+            let first = stamped.peek().and_then(|it| it.as_ref().ok());
+            let start = first.map_or(0.0, |it| it.stamp.time);
+            let rows = stamped.map(|it| it.map(|it| it.row));
+            (Box::new(rows), given, start)
         } else {
             let even = Even::of_rows(&account, stamped, header)?;
             let (rate, start) = (even.rate, even.start());
@@ -278,9 +269,6 @@ fn format_of(layout: &Layout) -> String {
         0 => String::new(),
         lines => format!(", rows from line {}", lines + 1),
     };
-    format!(
-        "text, {} columns with {} between{decimal}{before}",
-        layout.columns.len(),
-        layout.delimiter
-    )
+    let (count, delimiter) = (layout.columns.len(), layout.delimiter);
+    format!("text, {count} columns with {delimiter} between{decimal}{before}")
 }

@@ -75,9 +75,8 @@ impl Pick {
                 (Displacement::Length(metres), None) => metres,
                 (Displacement::Volts(volts), Some(per_metre)) => volts / per_metre.0,
                 (Displacement::Volts(_), None) => {
-                    return Err(format!(
-                        "{name} is in volts: it needs a sensitivity, as \"200 mV/mil\""
-                    ));
+                    let rule = "it needs a sensitivity, as \"200 mV/mil\"";
+                    return Err(format!("{name} is in volts: {rule}"));
                 }
                 (Displacement::Length(_), Some(_)) => {
                     return Err(format!("{name} is a length: a sensitivity is for volts"));
@@ -119,11 +118,9 @@ impl Pick {
         let all: Vec<_> = self.quantities().collect();
         for (index, (name, column)) in all.iter().enumerate() {
             if let Some((before, _)) = all[..index].iter().find(|it| it.1 == *column) {
-                let (number, named) = (column + 1, &found[*column].text);
+                let which = format!("column {} {:?}", column + 1, found[*column].text);
                 let rule = "each needs a column of its own";
-                return Err(format!(
-                    "{before} and {name} are both column {number} {named:?}: {rule}"
-                ));
+                return Err(format!("{before} and {name} are both {which}: {rule}"));
             }
         }
         Ok(())
@@ -181,24 +178,22 @@ impl Pick {
 
 fn time(mapping: &Mapping, found: &[Heading]) -> Result<Option<(usize, i32)>, String> {
     let it = mapping.time.as_ref().map(toml::Spanned::get_ref);
-    let Some((it, column)) = it.and_then(|it| Some((it, it.column.as_ref()?))) else {
-        return Ok(None);
-    };
-    let index = find(column, "time", found)?;
-    let Time(power) = unit(it.unit, "time", &found[index], "s")?;
-    Ok(Some((index, power)))
+    let it = it.and_then(|it| Some((it.column.as_ref()?, it.unit)));
+    it.map(|(column, given)| {
+        let index = find(column, "time", found)?;
+        let Time(power) = unit(given, "time", &found[index], "s")?;
+        Ok((index, power))
+    })
+    .transpose()
 }
 
 fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String> {
+    let count = found.len();
     let name = match column {
         Column::Number(number) => {
-            let index = number.checked_sub(1).filter(|it| *it < found.len());
-            return index.ok_or_else(|| {
-                format!(
-                    "{what}: there is no column {number}, there are {}",
-                    found.len()
-                )
-            });
+            let index = number.checked_sub(1).filter(|it| *it < count);
+            let rule = || format!("{what}: there is no column {number}, there are {count}");
+            return index.ok_or_else(rule);
         }
         Column::Name(name) => name.trim(),
     };
@@ -209,23 +204,18 @@ fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String>
         &|it| it.parts().0.eq_ignore_ascii_case(name),
     ];
     for test in tests {
-        let mut places = (0..found.len()).filter(|index| test(&found[*index]));
-        match (places.next(), places.next()) {
-            (Some(index), None) => return Ok(index),
+        let mut places = (1..=count).filter(|number| test(&found[number - 1]));
+        let rule = match (places.next(), places.next()) {
+            (Some(number), None) => return Ok(number - 1),
             (Some(one), Some(other)) => {
-                return Err(format!(
-                    "{what}: columns {} and {} are both named {name:?}; give the number",
-                    one + 1,
-                    other + 1
-                ));
+                format!("columns {one} and {other} are both named {name:?}; give the number")
             }
-            _ => {}
-        }
+            _ => continue,
+        };
+        return Err(format!("{what}: {rule}"));
     }
-    Err(format!(
-        "{what}: there is no column {name:?}; {}",
-        list(found)
-    ))
+    let columns = list(found);
+    Err(format!("{what}: there is no column {name:?}; {columns}"))
 }
 
 /// The unit that is given, or else that of the column; `example` is one that could be given.
@@ -249,10 +239,8 @@ pub fn by_name(found: &[Heading]) -> Option<Mapping> {
         found.iter().any(is)
     };
     let groups: [&[&str]; 4] = [&POSITIONS[..2], &POSITIONS[2..], &["speed"], &["levitated"]];
-    let mut groups = groups
-        .into_iter()
-        .filter(|it| it.iter().all(there))
-        .peekable();
+    let groups = groups.into_iter().filter(|it| it.iter().all(there));
+    let mut groups = groups.peekable();
     groups.peek().filter(|it| it[0] == POSITIONS[0])?;
     let table = |name: &&str| format!("[{name}]\ncolumn = \"{name}\"\n");
     toml::from_str(&groups.flatten().map(table).collect::<String>()).ok()
@@ -261,12 +249,9 @@ pub fn by_name(found: &[Heading]) -> Option<Mapping> {
 /// The columns, for people.
 pub fn list(found: &[Heading]) -> String {
     const NAMED: usize = 20;
-    let names = found.iter().take(NAMED).enumerate().map(|(index, it)| {
-        let unit = it
-            .unit
-            .as_ref()
-            .map_or(String::new(), |unit| format!(" in {unit}"));
-        format!("{} {:?}{unit}", index + 1, it.text)
+    let names = (1..).zip(found).take(NAMED).map(|(number, it)| {
+        let unit = it.unit.as_ref().map(|unit| format!(" in {unit}"));
+        format!("{number} {:?}{}", it.text, unit.unwrap_or_default())
     });
     let names: Vec<_> = names.collect();
     let more = if found.len() > NAMED { ", ..." } else { "" };

@@ -72,19 +72,15 @@ impl<R: Read> TextRows<R> {
         sensors: &SensorsConfig,
         account: &Account,
     ) -> Result<Self, InputError> {
-        let layout = head
-            .layout(&mapping.text)
-            .map_err(|(line, rule)| account.at_line(line, rule))?;
+        let layout = head.layout(&mapping.text);
+        let layout = layout.map_err(|(line, rule)| account.at_line(line, rule))?;
         let header = layout.before.1.max(1);
         let fail = |rule: String| account.at_line(header, rule);
         let pick = Pick::new(mapping, &layout.columns, sensors, account).map_err(fail)?;
         let rate = mapping.time.as_ref().and_then(|it| it.get_ref().rate_hz);
         if pick.time.is_none() && rate.is_none() {
-            let rule = format!(
-                "nothing says when its rows were sampled: [time] of --columns needs a column or rate_hz; {}",
-                list(&layout.columns)
-            );
-            return Err(fail(rule));
+            let rule = "nothing says when its rows were sampled: [time] of --columns needs a column or rate_hz";
+            return Err(fail(format!("{rule}; {}", list(&layout.columns))));
         }
         let bytes = Bounded::new(head.whole(layout.before.0), account);
         let records = csv::ReaderBuilder::new()
@@ -130,10 +126,12 @@ impl<R: Read> TextRows<R> {
         let row = self.parse(line);
         self.there = self.advance();
         if matches!(self.there, Ok(false)) && !self.account.ends_in(b"\r\n") {
-            self.account.warn(format!(
-                "{}:{line}: the last line is left out: it does not end with a newline, so it may be cut off",
-                self.account.file
-            ));
+            let (file, rule) = (
+                &self.account.file,
+                "it does not end with a newline, so it may be cut off",
+            );
+            let text = format!("{file}:{line}: the last line is left out: {rule}");
+            self.account.warn(text);
             return Ok(None);
         }
         let row = row.map_err(|rule| self.account.at_line(line, rule));
@@ -141,12 +139,9 @@ impl<R: Read> TextRows<R> {
     }
 
     fn parse(&mut self, line: u64) -> Result<Stamped, String> {
-        let columns = self.layout.columns.len();
-        if self.record.len() != columns {
-            let there = self.record.len();
-            return Err(format!(
-                "a row needs {columns} fields, this one has {there}"
-            ));
+        let (needed, there) = (self.layout.columns.len(), self.record.len());
+        if there != needed {
+            return Err(format!("a row needs {needed} fields, this one has {there}"));
         }
         for index in 0..self.used.len() {
             let column = self.used[index];
@@ -164,38 +159,38 @@ impl<R: Read> TextRows<R> {
         })
     }
 
-    fn name(&self, column: usize) -> String {
-        match self.layout.columns[column].text.as_str() {
-            "" => format!("column {}", column + 1),
-            name => name.to_owned(),
-        }
+    /// What `read` makes of a field; else that it must be `wanted`, and `more`.
+    fn field<T>(
+        &self,
+        column: usize,
+        (wanted, more): (&str, &str),
+        read: impl FnOnce(&str) -> Option<T>,
+    ) -> Result<T, String> {
+        let bytes = &self.record[column];
+        read(str::from_utf8(bytes).unwrap_or("?")).ok_or_else(|| {
+            let text = text_of(bytes);
+            match self.layout.columns[column].text.as_str() {
+                "" => format!("column {} must be {wanted}, is {text:?}{more}", column + 1),
+                name => format!("{name} must be {wanted}, is {text:?}{more}"),
+            }
+        })
     }
 
     fn number(&self, column: usize) -> Result<f64, String> {
-        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
-        if is_missing(text) {
-            return Ok(f64::NAN);
-        }
-        let number = with_point(text, self.layout.decimal).and_then(|it| it.parse::<f64>().ok());
-        number.filter(|it| it.is_finite()).ok_or_else(|| {
-            let text = text_of(&self.record[column]);
-            format!(
-                "{} must be a finite number, empty or NaN, is {text:?}",
-                self.name(column)
-            )
+        let wanted = ("a finite number, empty or NaN", "");
+        self.field(column, wanted, |text| {
+            if is_missing(text) {
+                return Some(f64::NAN);
+            }
+            let number: f64 = with_point(text, self.layout.decimal)?.parse().ok()?;
+            number.is_finite().then_some(number)
         })
     }
 
     fn stamp(&self, column: usize, power: i32) -> Result<Stamp, String> {
-        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
-        let point = with_point(text, self.layout.decimal);
-        let stamp = point.and_then(|it| Stamp::parse(&it)?.times_ten_to(power));
-        stamp.ok_or_else(|| {
-            let text = text_of(&self.record[column]);
-            format!(
-                "{} must be a finite number, is {text:?}; without one, give rate_hz in the [time] of --columns",
-                self.name(column)
-            )
+        let more = "; without one, give rate_hz in the [time] of --columns";
+        self.field(column, ("a finite number", more), |text| {
+            Stamp::parse(&with_point(text, self.layout.decimal)?)?.times_ten_to(power)
         })
     }
 }

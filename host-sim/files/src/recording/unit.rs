@@ -38,9 +38,8 @@ fn plain(text: &str) -> String {
 }
 
 fn unknown<T>(quantity: &str, units: &str, text: &str) -> Result<T, String> {
-    Err(format!(
-        "the unit of {quantity} must be {units}, is {text:?}"
-    ))
+    let rule = format!("must be {units}, is {text:?}");
+    Err(format!("the unit of {quantity} {rule}"))
 }
 
 impl TryFrom<String> for Displacement {
@@ -93,9 +92,8 @@ impl TryFrom<String> for Sensitivity {
 
     fn try_from(text: String) -> Result<Self, String> {
         let rule = || {
-            format!(
-                "a sensitivity is a number and its unit, as \"200 mV/mil\" or \"-7.87 V/mm\", is {text:?}"
-            )
+            let examples = "as \"200 mV/mil\" or \"-7.87 V/mm\"";
+            format!("a sensitivity is a number and its unit, {examples}, is {text:?}")
         };
         let text = text.trim();
         let digits = |it: char| it.is_ascii_digit() || "+-.".contains(it);
@@ -121,10 +119,9 @@ impl TryFrom<String> for Sensitivity {
 pub fn split(heading: &str) -> (&str, Option<&str>) {
     let heading = heading.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
-        let inside = heading
-            .strip_suffix(close)
-            .and_then(|it| it.rsplit_once(open));
-        if let Some((name, unit)) = inside {
+        if let Some(inside) = heading.strip_suffix(close)
+            && let Some((name, unit)) = inside.rsplit_once(open)
+        {
             return (name.trim(), Some(unit.trim()));
         }
     }

@@ -54,6 +54,11 @@ impl Account {
         self.warnings.borrow_mut().push(text);
     }
 
+    /// The same of the file as a whole.
+    pub fn doubt(&self, rule: &str) {
+        self.warn(format!("{}: {rule}", self.file));
+    }
+
     /// All such so far; none is left.
     pub fn take_warnings(&self) -> Vec<String> {
         self.warnings.take()

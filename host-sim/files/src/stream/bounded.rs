@@ -64,8 +64,8 @@ impl<R: Read> Read for Bounded<R> {
             return Ok(read);
         }
         self.account.passed.too_long.set(true);
-        Err(io::Error::other(format!(
-            "a row of more than {LONGEST} bytes: no recording has such rows"
-        )))
+        let rule = "no recording has such rows";
+        let text = format!("a row of more than {LONGEST} bytes: {rule}");
+        Err(io::Error::other(text))
     }
 }

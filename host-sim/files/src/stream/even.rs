@@ -17,6 +17,12 @@ pub fn is_rate(rate: f64) -> bool {
     (RATES.start() * (1.0 - ROUNDING)..=RATES.end() * (1.0 + ROUNDING)).contains(&rate)
 }
 
+/// That `rate` (Hz) is none.
+pub(crate) fn not_a_rate(rate: f64) -> String {
+    let rate = Number(rate);
+    format!("the sample rate must be 100 to 200000 Hz, is {rate} Hz")
+}
+
 /// Rows held to the rate of the first [`LOOK_AHEAD`] of them.
 pub struct Even<I> {
     account: Account,
@@ -68,11 +74,7 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
             return Err(account.at_line(first.line, rule));
         };
         if !is_rate(rate) {
-            let rule = format!(
-                "the sample rate must be 100 to 200000 Hz, is {} Hz",
-                Number(rate)
-            );
-            return Err(account.at_line(second, rule));
+            return Err(account.at_line(second, not_a_rate(rate)));
         }
         even.rate = rate;
         Ok(even)

@@ -17,6 +17,7 @@ mod write;
 pub use account::Account;
 pub use bounded::{Bounded, LONGEST};
 pub use clock::{Clock, LOOK_AHEAD, Stamp};
+pub(crate) use even::not_a_rate;
 pub use even::{Even, is_rate};
 pub(crate) use learnt::LEARNT;
 pub use learnt::{of_field, to_field};

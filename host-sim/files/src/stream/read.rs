@@ -36,9 +36,8 @@ impl<R: Read> Records<R> {
             .flexible(true)
             .trim(csv::Trim::All)
             .from_reader(bytes);
-        let header = records
-            .headers()
-            .map_err(|error| account.csv_error(&error))?;
+        let header = records.headers();
+        let header = header.map_err(|error| account.csv_error(&error))?;
         let names: Vec<_> = header.iter().collect();
         let known = names.strip_suffix(&[LEARNT]).unwrap_or(&names);
         let Some(columns) = Columns::of_header(known) else {
@@ -82,25 +81,25 @@ impl<R: Read> Records<R> {
         let (record, header, columns) = (&self.record, &self.header, &self.columns);
         let line = self.line();
         let fail = |rule: String| self.account.at_line(line, rule);
-        if record.len() != header.len() {
-            return Err(fail(format!(
-                "a row needs {} fields, this one has {}",
-                header.len(),
-                record.len()
-            )));
+        let (needed, there) = (header.len(), record.len());
+        if there != needed {
+            let rule = format!("a row needs {needed} fields, this one has {there}");
+            return Err(fail(rule));
         }
-        let stamp = Stamp::parse(&record[0]).ok_or_else(|| {
+        let no_time = || {
             fail(format!(
                 "time_s must be a finite number, is {:?}",
                 &record[0]
             ))
-        })?;
+        };
+        let stamp = Stamp::parse(&record[0]).ok_or_else(no_time)?;
+        let broken = |(name, text): (&str, &str), rule: &str| {
+            fail(format!("{name} must be {rule}, is {text:?}"))
+        };
         let number = |(name, text): (&str, &str)| match text.parse::<f64>() {
             _ if is_missing(text) => Ok(f64::NAN),
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(fail(format!(
-                "{name} must be a finite number, empty or NaN, is {text:?}"
-            ))),
+            _ => Err(broken((name, text), "a finite number, empty or NaN")),
         };
         let mut fields = header.iter().copied().zip(record).skip(1);
         // There are as many as the columns want.
@@ -110,12 +109,11 @@ impl<R: Read> Records<R> {
             *position = MICRO * number(next())?;
         }
         let spin = columns.speed.then(|| number(next())).transpose()?;
-        let levitated = match columns.levitated.then(|| next().1) {
-            Some("0") => Some(false),
-            Some("1") => Some(true),
-            Some(other) if !is_missing(other) => {
-                let rule = "must be 0, 1, empty or NaN";
-                return Err(fail(format!("levitated {rule}, is {other:?}")));
+        let levitated = match columns.levitated.then(&mut next) {
+            Some((_, "0")) => Some(false),
+            Some((_, "1")) => Some(true),
+            Some(field) if !is_missing(field.1) => {
+                return Err(broken(field, "0, 1, empty or NaN"));
             }
             _ => None,
         };
@@ -124,18 +122,15 @@ impl<R: Read> Records<R> {
             let (counted, aged) = (next(), next());
             let (count, age) = (number(counted)?, MICRO * number(aged)?);
             if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
-                let (name, text) = counted;
-                let rule = "must be a whole number from 0 to 2^53, empty or NaN";
-                return Err(fail(format!("{name} {rule}, is {text:?}")));
+                let rule = "a whole number from 0 to 2^53, empty or NaN";
+                return Err(broken(counted, rule));
             }
             if age < 0.0 {
-                let (name, text) = aged;
-                return Err(fail(format!("{name} must be 0 or more, is {text:?}")));
+                return Err(broken(aged, "0 or more"));
             }
-            *pulses = (!count.is_nan() && !age.is_nan()).then_some(Pulses {
-                count: count as u64,
-                age,
-            });
+            let is_known = !count.is_nan() && !age.is_nan();
+            let count = count as u64;
+            *pulses = is_known.then_some(Pulses { count, age });
         }
         let row = Row {
             time: stamp.time,

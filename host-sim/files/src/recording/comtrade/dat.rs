@@ -46,12 +46,9 @@ impl<R: Read> Dat<R> {
         let source = if cfg.data == Data::Ascii {
             let bytes = Bounded::new(bytes, &account);
             let mut reader = csv::ReaderBuilder::new();
-            let reader = reader
-                .has_headers(false)
-                .flexible(true)
-                .trim(csv::Trim::All);
-            let reader = Box::new(reader.from_reader(bytes));
-            Source::Text(reader, ByteRecord::new())
+            reader.has_headers(false).flexible(true);
+            let reader = reader.trim(csv::Trim::All).from_reader(bytes);
+            Source::Text(Box::new(reader), ByteRecord::new())
         } else {
             Source::Binary(bytes, Vec::new())
         };
@@ -106,21 +103,16 @@ impl<R: Read> Dat<R> {
 
 fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
     let needed = 2 + values.len();
-    if record.len() != needed {
-        let there = record.len();
-        return Err(format!(
-            "a sample needs {needed} fields, this one has {there}"
-        ));
+    let there = record.len();
+    if there != needed {
+        let rule = format!("a sample needs {needed} fields");
+        return Err(format!("{rule}, this one has {there}"));
     }
     let text = |at: usize| std::str::from_utf8(&record[at]).unwrap_or("?");
-    let number = |at: usize| -> Result<Option<f64>, String> {
-        match text(at) {
-            "" => Ok(None),
-            it => match it.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(Some(value)),
-                _ => Err(format!("field {} must be a number, is {it:?}", at + 1)),
-            },
-        }
+    let number = |at: usize| match (text(at), text(at).parse::<f64>()) {
+        ("", _) => Ok(None),
+        (_, Ok(value)) if value.is_finite() => Ok(Some(value)),
+        (it, _) => Err(format!("field {} must be a number, is {it:?}", at + 1)),
     };
     for (index, value) in values.iter_mut().enumerate() {
         let count = number(2 + index)?;
@@ -132,11 +124,9 @@ fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample,
             None => count.unwrap_or(f64::NAN),
         };
     }
-    let sample = text(0)
-        .parse()
-        .map_err(|_| format!("the sample's number must be whole, is {:?}", text(0)))?;
+    let whole = |_| format!("the sample's number must be whole, is {:?}", text(0));
     Ok(Sample {
-        number: sample,
+        number: text(0).parse().map_err(whole)?,
         stamp: number(1)?,
     })
 }

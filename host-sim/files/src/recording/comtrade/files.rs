@@ -31,8 +31,8 @@ fn ends(path: &Path, ending: &str) -> bool {
 pub fn open(path: &Path, account: &Account) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
     let cfg_path = beside(path, "cfg")?;
     let text = text_of(&InputError::read_bytes(&cfg_path, LARGEST_CFG)?);
-    let cfg = Cfg::parse(&text)
-        .map_err(|(line, rule)| InputError::at_line(&cfg_path.display().to_string(), line, rule))?;
+    let name = cfg_path.display().to_string();
+    let cfg = Cfg::parse(&text).map_err(|(line, rule)| InputError::at_line(&name, line, rule))?;
     let dat_path = beside(path, "dat")?;
     let (file, size) = InputError::open(&dat_path)?;
     let mut account = account.clone();
@@ -48,9 +48,8 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
     let endings = [ending.to_owned(), ending.to_ascii_uppercase()];
     let mut paths = endings.iter().map(|it| path.with_extension(it));
     paths.find(|it| it.exists()).ok_or_else(|| {
-        let rule = format!(
-            "there is no .{ending} beside it: a COMTRADE recording has .cfg and .dat, or is a .cff"
-        );
+        let rule = "a COMTRADE recording has .cfg and .dat, or is a .cff";
+        let rule = format!("there is no .{ending} beside it: {rule}");
         InputError::of_file(&path.display().to_string(), rule)
     })
 }

@@ -63,20 +63,15 @@ impl<R: Read> ComtradeRows<R> {
         }
         let pick = Pick::new(mapping, &found, sensors, account).map_err(fail)?;
         for channel in pick.used().iter().filter_map(|it| cfg.analog.get(*it)) {
+            let (name, late) = (&channel.heading.text, Number(channel.skew));
             if channel.skew != 0.0 {
-                account.warn(format!(
-                    "{}: channel {} is sampled {} us late, which is not undone",
-                    account.file,
-                    channel.heading.text,
-                    Number(channel.skew)
-                ));
+                let rule = format!("channel {name} is sampled {late} us late, which is not undone");
+                account.doubt(&rule);
             }
         }
         if cfg.start.is_none() {
-            account.warn(format!(
-                "{}: the dates of first sample and trigger cannot be read; time 0 is the first sample",
-                account.file
-            ));
+            let rule = "the dates of first sample and trigger cannot be read";
+            account.doubt(&format!("{rule}; time 0 is the first sample"));
         }
         Ok(Self {
             dat,
@@ -97,19 +92,14 @@ impl<R: Read> ComtradeRows<R> {
         };
         let cfg = &self.dat.cfg;
         let line = self.dat.records;
-        if line > cfg.samples {
-            let rule = format!(
-                "there are more than the {} samples of the configuration",
-                cfg.samples
-            );
+        let (told, number) = (cfg.samples, sample.number);
+        if line > told {
+            let rule = format!("there are more than the {told} samples of the configuration");
             return Err(self.dat.flaw(rule));
         }
-        if sample.number != line {
-            let rule = format!(
-                "sample {line} is numbered {}: one is missing, or the file is damaged",
-                sample.number
-            );
-            return Err(self.dat.flaw(rule));
+        if number != line {
+            let rule = "one is missing, or the file is damaged";
+            return Err((self.dat).flaw(format!("sample {line} is numbered {number}: {rule}")));
         }
         let start = cfg.start.unwrap_or(0.0);
         let first = *self.first.get_or_insert(sample.stamp.unwrap_or(0.0));
