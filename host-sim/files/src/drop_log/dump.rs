@@ -85,9 +85,8 @@ impl Dump {
         let slots = (bytes.len() - bytes_of(0)).div_ceil(bytes_of(1) - bytes_of(0));
         let mut flash = flash(bytes, slots);
         let counters = newest(&mut flash);
-        let mut episodes: Vec<Episode> = (0..slots)
-            .filter_map(|slot| held(&mut flash, slot))
-            .collect();
+        let episodes = (0..slots).filter_map(|slot| held(&mut flash, slot));
+        let mut episodes: Vec<_> = episodes.collect();
         episodes.sort_by_key(|it| it.sequence);
         mark_twins(&mut episodes);
         for it in &mut episodes {
@@ -135,8 +134,7 @@ fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
     episode.slot = Some(number);
     episode.locked = slot.locked;
     if slot.sequence != episode.sequence {
-        let flaw = "its first pages are lost, so the controller does not know it";
-        episode.flaw(flaw.to_owned());
+        episode.flaw("its first pages are lost, so the controller does not know it".to_owned());
     }
     Some(episode)
 }

@@ -1,11 +1,13 @@
 //! Which column of a recording is what: the file of `--columns`.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::unit::{Displacement, Sensitivity, Speed, Time};
+use crate::stream::is_rate;
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::file::tables;
 
@@ -172,10 +174,10 @@ impl Mapping {
     /// Reads the mapping `text`; errors name it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
         let mapping: Self = tables(name, text)?;
-        mapping
-            .check()
-            .map_err(|(span, rule)| InputError::at_span(name, text, span, rule))?;
-        Ok(mapping)
+        match mapping.check() {
+            Ok(()) => Ok(mapping),
+            Err((span, rule)) => Err(InputError::at_span(name, text, span, rule)),
+        }
     }
 
     /// The displacements, in the order of the channels.
@@ -183,19 +185,16 @@ impl Mapping {
         [&self.ax, &self.ay, &self.bx, &self.by].map(|it| it.as_ref().map(Spanned::get_ref))
     }
 
-    fn check(&self) -> Result<(), (std::ops::Range<usize>, String)> {
+    fn check(&self) -> Result<(), (Range<usize>, &'static str)> {
         if self.ax.is_none() || self.ay.is_none() {
             let rule = "[ax] and [ay] say which columns are the displacements of plane a";
-            return Err((0..0, rule.to_owned()));
+            return Err((0..0, rule));
         }
         if let (Some(one), None) | (None, Some(one)) = (&self.bx, &self.by) {
-            let rule = "plane b needs both [bx] and [by]";
-            return Err((one.span(), rule.to_owned()));
+            return Err((one.span(), "plane b needs both [bx] and [by]"));
         }
-        for column in [&self.ax, &self.ay, &self.bx, &self.by]
-            .into_iter()
-            .flatten()
-        {
+        let columns = [&self.ax, &self.ay, &self.bx, &self.by];
+        for column in columns.into_iter().flatten() {
             let it = column.get_ref();
             let rule = match (it.unit, it.sensitivity) {
                 _ if !it.offset.is_finite() => "offset must be a finite number",
@@ -207,19 +206,17 @@ impl Mapping {
                 }
                 _ => continue,
             };
-            return Err((column.span(), rule.to_owned()));
+            return Err((column.span(), rule));
         }
         if let Some(time) = &self.time {
             let it = time.get_ref();
             let rule = match (&it.column, it.rate_hz) {
                 (Some(_), Some(_)) => "a column or a rate_hz, not both",
-                (None, Some(rate)) if !crate::stream::is_rate(rate) => {
-                    "rate_hz must be 100 to 200000"
-                }
+                (None, Some(rate)) if !is_rate(rate) => "rate_hz must be 100 to 200000",
                 (None, Some(_)) if it.unit.is_some() => "a unit is for a column",
                 _ => return Ok(()),
             };
-            return Err((time.span(), rule.to_owned()));
+            return Err((time.span(), rule));
         }
         Ok(())
     }
