@@ -81,29 +81,10 @@ pub(super) enum Command {
     #[command(after_help = help!("force"))]
     Force(ForceArgs),
     /// Run the model at its extremes: what was measured, the limit, and whether it holds
-    ///
-    /// Steps of 1 us to 1 ms; restitution, friction, gap, spin and gravity at their ends; starts on,
-    /// along and into the wall; the cases between two motions; a whole bounce series or an endless
-    /// growth of whirl in one step; 10^9 ticks; NaN, infinity and the smallest numbers. Each in f64 and
-    /// in f32.
-    ///
-    /// Every measure is held against the independent reference, a closed form or a law of physics;
-    /// "used" is how much of the limit it takes. rho0 is the gap, T = sqrt(rho0/g), V = sqrt(g rho0);
-    /// the target of an impact is 1e-14 + 20 A 2.2e-16 (f64) and 5e-6 + 50 A 6e-8 (f32) in these units,
-    /// A being the growth of a change at the start. Where the rotor spins, the limit of the energy
-    /// contains the last digit of its spin.
-    ///
-    /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
-    #[command(after_help = help!("limits"))]
+    #[command(long_about = help!("limits_long"), after_help = help!("limits"))]
     Limits(LimitsArgs),
     /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
-    ///
-    /// Truth is the independent reference, and what was put in; bounds are closed forms at one false
-    /// alarm in 10^9 samples. docs/know/score.md says what each group does. The same seeds give the same
-    /// numbers on any number of cores.
-    ///
-    /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
-    #[command(after_help = help!("score"))]
+    #[command(long_about = help!("score_long"), after_help = help!("score"))]
     Score(ScoreArgs),
     /// Look at scenes
     #[command(subcommand, after_help = help!("scene"))]

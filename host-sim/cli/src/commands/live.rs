@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::event::{self, KeyCode, KeyModifiers};
 #[cfg(unix)]
 use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
@@ -97,8 +97,8 @@ impl Session<'_> {
         }
         let line = line(update, &self.watched) + "\n";
         if let Some((file, name)) = &mut self.record {
-            file.write_all(line.as_bytes())
-                .map_err(Failure::output(name))?;
+            let written = file.write_all(line.as_bytes());
+            written.map_err(Failure::output(name))?;
         }
         Ok(Some(line))
     }
@@ -133,25 +133,24 @@ impl Session<'_> {
                 self.take(update)?;
             }
             let now = self.watcher.now();
-            let (watched, at) = held
-                .as_ref()
-                .map_or((&self.watched, now), |it| (&it.0, it.1));
-            terminal
-                .draw(|frame| draw(frame, &view, watched, at))
-                .map_err(&fail)?;
+            let (watched, at) = match &held {
+                Some((watched, at)) => (watched, *at),
+                None => (&self.watched, now),
+            };
+            let drawn = terminal.draw(|frame| draw(frame, &view, watched, at));
+            drawn.map_err(&fail)?;
             if !event::poll(PICTURE).map_err(&fail)? {
                 continue;
             }
-            let Event::Key(key) = event::read().map_err(&fail)? else {
+            let event = event::read().map_err(&fail)?;
+            let Some(key) = event.as_key_press_event() else {
                 continue;
             };
+            // The terminal passes an interrupt on as a key.
+            let is_interrupt = key.modifiers.contains(KeyModifiers::CONTROL);
             match key.code {
-                _ if key.kind != KeyEventKind::Press => {}
                 KeyCode::Char('q') | KeyCode::Esc => return Ok(()),
-                // The terminal passes it on as a key.
-                KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => {
-                    return Ok(());
-                }
+                KeyCode::Char('c') if is_interrupt => return Ok(()),
                 KeyCode::Char(' ') => {
                     held = held.is_none().then(|| (self.watched.clone(), now));
                     view.held = held.is_some();

@@ -91,10 +91,9 @@ fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure>
         None => all.next(),
     };
     found.ok_or_else(|| {
-        let what = number.map_or("no episode".to_owned(), |it| format!("no episode {it}"));
-        Failure::Usage(format!(
-            "{file}: {what}; touchdown log list {file} shows what there is"
-        ))
+        let what = number.map_or(String::new(), |it| format!(" {it}"));
+        let rule = format!("touchdown log list {file} shows what there is");
+        Failure::Usage(format!("{file}: no episode{what}; {rule}"))
     })
 }
 

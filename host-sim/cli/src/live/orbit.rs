@@ -17,10 +17,9 @@ const DOTS: [f64; 2] = [2.0, 4.0];
 /// Draws the orbit of `plane` (0 is a).
 pub(super) fn orbit(frame: &mut Frame<'_>, area: Rect, watched: &Watched, plane: usize) {
     let name = ["a", "b"].get(plane).unwrap_or(&"?");
-    let clearance = watched
-        .settings
-        .map(|it| f64::from(it.monitor.detector.machine.clearance))
-        .filter(|it| *it > 0.0);
+    let told = watched.settings.map(|it| it.monitor.detector.machine);
+    let clearance = told.map(|it| f64::from(it.clearance));
+    let clearance = clearance.filter(|it| *it > 0.0);
     let title = clearance.map_or_else(
         || format!(" orbit, plane {name} "),
         |it| format!(" orbit, plane {name}, clearance {:.3} mm ", it * 1e3),

@@ -74,9 +74,8 @@ fn status_lines(watched: &Watched, now: f64) -> Vec<Line<'static>> {
         return vec![Line::raw("nothing heard yet")];
     };
     let (it, counters) = (state.outputs, &state.counters);
-    let rate = watched
-        .sample_rate()
-        .map_or("-".to_owned(), |it| format!("{it:.0}"));
+    let rate = watched.sample_rate();
+    let rate = rate.map_or("-".to_owned(), |it| format!("{it:.0}"));
     let nominal = watched.hello.as_ref().map_or(0.0, |it| it.sample_rate);
     let frames = watched.frame_rate(now);
     let age = watched.age(now).unwrap_or(f64::INFINITY);
@@ -150,9 +149,8 @@ fn mode(state: &State) -> Span<'static> {
         Mode::Watching => Color::Green,
         Mode::Dropped | Mode::Faulted => Color::Red,
     };
-    let cause = state
-        .cause
-        .map_or(String::new(), |it| format!(": {}", <&str>::from(it)));
+    let cause = state.cause.map(|it| format!(": {}", <&str>::from(it)));
+    let cause = cause.unwrap_or_default();
     (<&str>::from(state.mode).to_owned() + &cause).fg(colour)
 }
 
@@ -180,9 +178,8 @@ fn event_line(event: &DetectedEvent) -> Line<'static> {
         (None, None, Some(fault)) => format!(" {} {}", fault.channel, fault.kind),
         (None, None, None) => String::new(),
     };
-    let speed = event
-        .normal_speed_m_s
-        .map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
+    let speed = event.normal_speed_m_s;
+    let speed = speed.map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
     let time = Span::raw(format!("{:>11.4}  ", event.onset_s));
     let name = <&str>::from(event.event).yellow();
     Line::from(vec![time, name, Span::raw(fate), Span::raw(speed)])

@@ -79,10 +79,8 @@ struct End {
 
 impl End {
     fn connect(&mut self, stream: TcpStream) {
-        let ready = stream
-            .set_nonblocking(true)
-            .and_then(|()| stream.set_nodelay(true));
-        self.stream = ready.is_ok().then_some(stream);
+        let is_ready = stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok();
+        self.stream = is_ready.then_some(stream);
         self.waiting.clear();
     }
 
@@ -114,7 +112,6 @@ impl End {
     }
 }
 
-/// Spoils bytes.
 struct Noise {
     random: ChaCha8Rng,
     /// Probability that a byte is spoilt.

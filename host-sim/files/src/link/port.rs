@@ -38,18 +38,17 @@ impl Port {
     /// Opens it.
     pub fn open(&self) -> Result<Box<dyn Line>, LinkError> {
         if let Some(address) = self.0.strip_prefix(TCP) {
-            let mut failure = io::Error::other("no such host");
+            let mut connected = Err(io::Error::other("no such host"));
             for address in address.to_socket_addrs()? {
-                match TcpStream::connect_timeout(&address, LIMIT) {
-                    Ok(stream) => {
-                        stream.set_nodelay(true)?;
-                        stream.set_write_timeout(Some(LIMIT))?;
-                        return Ok(Box::new(stream));
-                    }
-                    Err(error) => failure = error,
+                connected = TcpStream::connect_timeout(&address, LIMIT);
+                if connected.is_ok() {
+                    break;
                 }
             }
-            return Err(failure.into());
+            let stream = connected?;
+            stream.set_nodelay(true)?;
+            stream.set_write_timeout(Some(LIMIT))?;
+            return Ok(Box::new(stream));
         }
         if let Some(path) = self.0.strip_prefix(UNIX) {
             return unix(path);
@@ -116,10 +115,7 @@ line!(Box<dyn serialport::SerialPort>, set_timeout);
 /// Nothing in time is no error; an end is one.
 fn come(read: io::Result<usize>) -> io::Result<usize> {
     match read {
-        Ok(0) => Err(io::Error::new(
-            ErrorKind::UnexpectedEof,
-            "the line was closed",
-        )),
+        Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
         Err(error) => match error.kind() {
             ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(0),
             _ => Err(error),

@@ -13,9 +13,7 @@ const LOOKED_AT: usize = 64;
 /// How a text is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Between fields.
     pub delimiter: Delimiter,
-    /// Between whole and fraction.
     pub decimal: Decimal,
     /// What a line that is none of the table begins with.
     pub comment: Option<Comment>,
@@ -102,13 +100,10 @@ impl Layout {
         }
         let has_units = above.len() == 2 && above[0].iter().any(|it| is_unit(it));
         let none = vec![String::new(); width];
-        let units = if has_units {
-            above.remove(0)
-        } else {
-            none.clone()
-        };
-        let names = above.into_iter().next().unwrap_or(none);
-        let columns = names.into_iter().zip(units).map(|(text, unit)| Heading {
+        let units = has_units.then(|| above.remove(0));
+        let names = above.into_iter().next().unwrap_or_else(|| none.clone());
+        let columns = names.into_iter().zip(units.unwrap_or(none));
+        let columns = columns.map(|(text, unit)| Heading {
             text,
             unit: Some(unit).filter(|it| !it.is_empty()),
         });

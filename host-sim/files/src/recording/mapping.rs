@@ -55,9 +55,7 @@ pub enum Axes {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextHints {
-    /// Between fields.
     pub delimiter: Option<Delimiter>,
-    /// Between whole and fraction.
     pub decimal: Option<Decimal>,
     /// What a line that is none of the table begins with.
     pub comment: Option<Comment>,

@@ -13,10 +13,10 @@ use std::io::{BufReader, Read};
 use std::iter;
 use std::path::Path;
 
-pub use comtrade::{DEVICE, STATION};
+pub use comtrade::{DEVICE, STATION, is_pair};
 pub use mapping::Mapping;
 
-use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
+use comtrade::{ComtradeRows, Dat, combined, is_combined};
 use doubt::Doubt;
 use layout::Layout;
 use resample::Resampled;

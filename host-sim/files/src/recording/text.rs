@@ -48,9 +48,7 @@ impl<R: Read> Head<R> {
 /// Rows of a text, its columns as a mapping has them.
 pub struct TextRows<R> {
     account: Account,
-    /// How it is written.
     pub layout: Layout,
-    /// What is taken of it.
     pub pick: Pick,
     used: Vec<usize>,
     /// The rate that the mapping gives, Hz.

@@ -15,16 +15,14 @@ pub const STATION: &str = "touchdown";
 /// Beginning of the device of an episode.
 pub const DEVICE: &str = "episode ";
 
-/// The configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cfg {
     /// Of the standard.
     pub year: u16,
     /// Whether it is the export of an episode: along the channels' axes, with zero and gain of a commissioning check.
     pub is_episode: bool,
-    /// In the order of the data.
+    /// In the order of the data, as the digital ones.
     pub analog: Vec<Analog>,
-    /// In the order of the data.
     pub digital: Vec<Heading>,
     /// Each rate (Hz) and the number of its last sample; none where the stamps alone tell.
     pub rates: Vec<(f64, u64)>,
@@ -32,7 +30,6 @@ pub struct Cfg {
     pub samples: u64,
     /// First sample before the trigger, s; `None` where the dates cannot be read.
     pub start: Option<f64>,
-    /// How the data are written.
     pub data: Data,
     /// Of one unit of a stamp, s.
     pub tick: f64,
@@ -56,13 +53,10 @@ pub struct Analog {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "UPPERCASE", ascii_case_insensitive)]
 pub enum Data {
-    /// Numbers with commas.
     Ascii,
-    /// 16 bit.
+    /// Whole numbers of 16 bit.
     Binary,
-    /// 32 bit.
     Binary32,
-    /// IEEE 754, 32 bit.
     Float32,
 }
 

@@ -15,16 +15,9 @@ const MISSING: [f64; 2] = [99_999.0, 999_999.0];
 /// Stamp that stands for none.
 const NO_STAMP: u32 = u32::MAX;
 
-/// A sample: its number, its stamp in ticks, and its values, which are with the reader.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// From 1.
-    pub number: u64,
-    /// Ticks; `None` where there is none.
-    pub stamp: Option<f64>,
-}
+/// Number of a sample, from 1, and its stamp in ticks, where it has one. Its values are with the reader.
+type Sample = (u64, Option<f64>);
 
-/// Reads samples.
 pub struct Dat<R> {
     pub account: Account,
     pub cfg: Cfg,
@@ -125,10 +118,7 @@ fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample,
         };
     }
     let whole = |_| format!("the sample's number must be whole, is {:?}", text(0));
-    Ok(Sample {
-        number: text(0).parse().map_err(whole)?,
-        stamp: number(1)?,
-    })
+    Ok((text(0).parse().map_err(whole)?, number(1)?))
 }
 
 fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
@@ -163,8 +153,6 @@ fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, Stri
         let word = u16::from_le_bytes([word[0], word[1]]);
         *value = f64::from(word >> (index % 16) & 1);
     }
-    Ok(Sample {
-        number: u64::from(number),
-        stamp: (stamp != NO_STAMP).then_some(f64::from(stamp)),
-    })
+    let stamp = (stamp != NO_STAMP).then_some(f64::from(stamp));
+    Ok((number.into(), stamp))
 }

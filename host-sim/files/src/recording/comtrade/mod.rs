@@ -47,16 +47,10 @@ impl<R: Read> ComtradeRows<R> {
         let fail = |rule: String| account.of_file(rule);
         let analog = cfg.analog.iter().map(|it| &it.heading);
         let found: Vec<Heading> = analog.chain(&cfg.digital).cloned().collect();
-        let named;
-        let mapping = match mapping {
-            Some(mapping) => mapping,
-            None => {
-                let rule = "no channels are named ax and ay: --columns says which they are";
-                let unnamed = || fail(format!("{rule}; {}", list(&found)));
-                named = by_name(&found).ok_or_else(unnamed)?;
-                &named
-            }
-        };
+        let rule = "no channels are named ax and ay: --columns says which they are";
+        let unnamed = || fail(format!("{rule}; {}", list(&found)));
+        let named = by_name(&found);
+        let mapping = mapping.or(named.as_ref()).ok_or_else(unnamed)?;
         if mapping.time.is_some() {
             let rule = "COMTRADE has its own rate: leave out [time] of --columns";
             return Err(fail(rule.to_owned()));
@@ -82,7 +76,7 @@ impl<R: Read> ComtradeRows<R> {
 
     /// The next sample's row.
     pub fn read(&mut self) -> Result<Option<Stamped>, InputError> {
-        let Some(sample) = self.dat.next()? else {
+        let Some((number, stamp)) = self.dat.next()? else {
             let (there, told) = (self.dat.records, self.dat.cfg.samples);
             if there < told {
                 let rule = format!("the data end at sample {there} of {told}: the file is cut off");
@@ -92,8 +86,8 @@ impl<R: Read> ComtradeRows<R> {
         };
         let cfg = &self.dat.cfg;
         let line = self.dat.records;
-        let (told, number) = (cfg.samples, sample.number);
-        if line > told {
+        if line > cfg.samples {
+            let told = cfg.samples;
             let rule = format!("there are more than the {told} samples of the configuration");
             return Err(self.dat.flaw(rule));
         }
@@ -102,8 +96,8 @@ impl<R: Read> ComtradeRows<R> {
             return Err((self.dat).flaw(format!("sample {line} is numbered {number}: {rule}")));
         }
         let start = cfg.start.unwrap_or(0.0);
-        let first = *self.first.get_or_insert(sample.stamp.unwrap_or(0.0));
-        let since = sample.stamp.map(|it| (it - first) * cfg.tick);
+        let first = *self.first.get_or_insert(stamp.unwrap_or(0.0));
+        let since = stamp.map(|it| (it - first) * cfg.tick);
         let stamp = if let Some((rate, _)) = cfg.rates.iter().find(|it| line <= it.1) {
             let since_first = cfg.time(line - 1);
             let period = 1.0 / rate;
@@ -116,11 +110,9 @@ impl<R: Read> ComtradeRows<R> {
                 off.min(wrap - off) > OFF * period + cfg.tick
             };
             if let Some(since) = since.filter(off) {
-                let rule = format!(
-                    "the stamp is {since:.6} s after the first sample, the rates of the configuration give \
-                     {since_first:.6} s"
-                );
-                return Err(self.dat.flaw(rule));
+                let rule = format!("the rates of the configuration give {since_first:.6} s");
+                let stamp = format!("the stamp is {since:.6} s after the first sample");
+                return Err(self.dat.flaw(format!("{stamp}, {rule}")));
             }
             Stamp::exact(start + since_first)
         } else {
