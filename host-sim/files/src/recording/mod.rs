@@ -65,20 +65,19 @@ pub struct Recording {
 impl Recording {
     /// Opens the recording at `path`; `scene` has the sensors and what can be expected.
     pub fn open(path: &Path, reading: &Reading, scene: &Scene) -> Result<Self, InputError> {
-        let file = path.display().to_string();
+        let account = Account::of(path.display().to_string());
         if !is_pair(path) {
             let (bytes, size) = InputError::open(path)?;
-            return Self::of_bytes(&file, bytes, size, reading, scene);
+            return Self::of_bytes(&account.file, bytes, size, reading, scene);
         }
-        let account = Account::of(file);
         let (dat, size) = comtrade::open(path, &account)?;
-        Source {
+        let source = Source {
             account,
             size,
             reading,
             scene,
-        }
-        .comtrade(dat)
+        };
+        source.comtrade(dat)
     }
 
     /// Reads the `size` bytes of the file `file`: a text, or by its name both parts of COMTRADE in one.
@@ -168,30 +167,19 @@ impl Source<'_> {
             }
             Err(_) => error,
         })?;
-        let (columns, learnt) = (records.columns, self.account.learnt.clone());
-        let is_resampled = self.reading.resample.is_some();
-        let recording = self.paced(columns, records, None, 1)?;
-        // Another rate would make something else of it.
-        let learnt = learnt.take().filter(|_| !is_resampled);
-        Ok(Recording {
-            is_episode: learnt.is_some(),
-            learnt,
-            ..recording
-        })
+        self.paced(records.columns, records, None, 1)
     }
 
-    fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
+    fn comtrade(self, dat: Dat) -> Result<Recording, InputError> {
         let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
         let mut rows = ComtradeRows::new(dat, mapping, &sensors)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
             let rates = cfg.rates.iter();
             let rates = rates.map(|(rate, last)| format!("{rate} Hz up to sample {last}"));
-            let (rates, rule) = (
-                rates.collect::<Vec<_>>(),
-                "--resample RATE makes one of them and says so",
-            );
-            let rule = format!("the sample rate changes: {}; {rule}", rates.join(", "));
+            let rates = rates.collect::<Vec<_>>().join(", ");
+            let rule = "--resample RATE makes one of them and says so";
+            let rule = format!("the sample rate changes: {rates}; {rule}");
             return Err(rows.dat.account.of_file(rule));
         }
         let is_episode = cfg.is_episode && mapping.is_none();
@@ -223,8 +211,7 @@ impl Source<'_> {
         let account = self.account;
         let (rows, rate, start): (Rows, f64, f64) = if let Some(wanted) = self.reading.resample {
             if columns.edges != [false; 2] {
-                let rule = "counted edges cannot be resampled";
-                return Err(account.of_file(rule));
+                return Err(account.of_file("counted edges cannot be resampled"));
             }
             let resampled = Resampled::new(&account, Box::new(stamped), wanted)?;
             let start = resampled.start;
@@ -245,13 +232,16 @@ impl Source<'_> {
             let (rate, start) = (even.rate, even.start());
             (Box::new(even), rate, start)
         };
+        // Another rate would make something else of it.
+        let learnt = account.learnt.take();
+        let learnt = learnt.filter(|_| self.reading.resample.is_none());
         Ok(Recording {
             columns,
             rate,
             start,
             format: None,
-            is_episode: false,
-            learnt: None,
+            is_episode: learnt.is_some(),
+            learnt,
             size: self.size,
             rows,
             account,

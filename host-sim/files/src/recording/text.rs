@@ -124,11 +124,9 @@ impl<R: Read> TextRows<R> {
         let row = self.parse(line);
         self.there = self.advance();
         if matches!(self.there, Ok(false)) && !self.account.ends_in(b"\r\n") {
-            let (file, rule) = (
-                &self.account.file,
-                "it does not end with a newline, so it may be cut off",
-            );
-            let text = format!("{file}:{line}: the last line is left out: {rule}");
+            let rule = "it does not end with a newline, so it may be cut off";
+            let at = format!("{}:{line}", self.account.file);
+            let text = format!("{at}: the last line is left out: {rule}");
             self.account.warn(text);
             return Ok(None);
         }

@@ -18,24 +18,24 @@ const NO_STAMP: u32 = u32::MAX;
 /// Number of a sample, from 1, and its stamp in ticks, where it has one. Its values are with the reader.
 type Sample = (u64, Option<f64>);
 
-pub struct Dat<R> {
+pub struct Dat {
     pub account: Account,
     pub cfg: Cfg,
-    source: Source<R>,
+    source: Source,
     /// Of the sample that was read last: analog in their units, then digital 0 or 1; NaN where there is none.
     pub values: Vec<f64>,
     /// Records so far.
     pub records: u64,
 }
 
-enum Source<R> {
-    Text(Box<csv::Reader<Bounded<R>>>, ByteRecord),
-    Binary(R, Vec<u8>),
+enum Source {
+    Text(Box<csv::Reader<Bounded<Box<dyn Read>>>>, ByteRecord),
+    Binary(Box<dyn Read>, Vec<u8>),
 }
 
-impl<R: Read> Dat<R> {
+impl Dat {
     /// Reads `bytes`, of which `account` is, as `cfg` says.
-    pub fn new(cfg: Cfg, bytes: R, account: Account) -> Self {
+    pub fn new(cfg: Cfg, bytes: Box<dyn Read>, account: Account) -> Self {
         let source = if cfg.data == Data::Ascii {
             let bytes = Bounded::new(bytes, &account);
             let mut reader = csv::ReaderBuilder::new();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
-use crate::stream::Account;
+use crate::stream::{Account, LONGEST};
 use touchdown_base::input_error::{InputError, reason};
 
 /// Larger than any configuration, bytes.
@@ -28,7 +28,7 @@ fn ends(path: &Path, ending: &str) -> bool {
 }
 
 /// Opens the recording that `path` is one of two files of; also the bytes of its data.
-pub fn open(path: &Path, account: &Account) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
+pub fn open(path: &Path, account: &Account) -> Result<(Dat, u64), InputError> {
     let cfg_path = beside(path, "cfg")?;
     let text = text_of(&InputError::read_bytes(&cfg_path, LARGEST_CFG)?);
     let name = cfg_path.display().to_string();
@@ -55,82 +55,42 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
 }
 
 /// A recording in one file: sections begin with lines as `--- file type: CFG ---`.
-pub fn combined(
-    bytes: Box<dyn BufRead>,
-    account: &Account,
-) -> Result<Dat<Box<dyn Read>>, InputError> {
-    let mut lines = Sections {
-        account,
-        bytes,
-        line: 0,
-    };
-    let (mut cfg, mut at) = (None, 0);
-    let mut section = lines.skip_to_section()?;
+pub fn combined(mut bytes: Box<dyn BufRead>, account: &Account) -> Result<Dat, InputError> {
+    // The line before the configuration, and its text as far as it goes.
+    let mut cfg: Option<(u64, String)> = None;
+    let (mut in_cfg, mut number) = (false, 0);
     loop {
-        let Some(kind) = section else {
+        // As much of it as is believed.
+        let mut line = Vec::new();
+        let read = (&mut bytes).take(LONGEST).read_until(b'\n', &mut line);
+        if read.map_err(|error| account.of_file(reason(&error)))? == 0 {
             let rule = "has no section \"--- file type: DAT ... ---\" after one of CFG";
             return Err(account.of_file(rule));
+        }
+        number += u64::from(line.ends_with(b"\n"));
+        let line = text_of(&line);
+        let Some(kind) = section(&line) else {
+            if let Some((_, text)) = cfg.as_mut().filter(|_| in_cfg) {
+                *text += &line;
+                if text.len() as u64 > LARGEST_CFG {
+                    return Err(account.at_line(number, "the configuration is larger than any"));
+                }
+            }
+            continue;
         };
-        if kind == "CFG" {
-            at = lines.line;
-            let (text, next) = lines.text()?;
-            cfg = Some(text);
-            section = next;
-        } else if let (true, Some(text)) = (kind.starts_with("DAT"), &cfg) {
+        in_cfg = kind == "CFG";
+        if in_cfg {
+            cfg = Some((number, String::new()));
+        } else if let (Some(data), Some((at, text))) = (kind.strip_prefix("DAT"), &cfg) {
             let cfg = Cfg::parse(text).map_err(|(line, rule)| account.at_line(at + line, rule))?;
-            let told = kind["DAT".len()..].split(':').next().unwrap_or("").trim();
+            let told = data.split(':').next().unwrap_or("").trim();
             if told.parse() != Ok(cfg.data) {
-                let rule =
-                    format!("the section's data are {told:?}, those of the configuration are not");
-                return Err(account.at_line(lines.line, rule));
+                let rule = "those of the configuration are not";
+                let rule = format!("the section's data are {told:?}, {rule}");
+                return Err(account.at_line(number, rule));
             }
-            return Ok(Dat::new(cfg, lines.bytes, account.clone()));
-        } else {
-            section = lines.skip_to_section()?;
+            return Ok(Dat::new(cfg, bytes, account.clone()));
         }
-    }
-}
-
-struct Sections<'a> {
-    account: &'a Account,
-    bytes: Box<dyn BufRead>,
-    line: u64,
-}
-
-impl Sections<'_> {
-    /// The next line, or as much of it as is believed; `None` at the end.
-    fn next(&mut self) -> Result<Option<String>, InputError> {
-        let mut line = Vec::new();
-        let mut some = (&mut self.bytes).take(crate::stream::LONGEST);
-        let read = some.read_until(b'\n', &mut line);
-        let read = read.map_err(|error| self.account.of_file(reason(&error)))?;
-        self.line += u64::from(line.ends_with(b"\n"));
-        Ok((read > 0).then(|| text_of(&line)))
-    }
-
-    fn skip_to_section(&mut self) -> Result<Option<String>, InputError> {
-        while let Some(line) = self.next()? {
-            if let Some(kind) = section(&line) {
-                return Ok(Some(kind));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The lines up to the next section, and its kind.
-    fn text(&mut self) -> Result<(String, Option<String>), InputError> {
-        let mut text = String::new();
-        while let Some(line) = self.next()? {
-            if let Some(kind) = section(&line) {
-                return Ok((text, Some(kind)));
-            }
-            text += &line;
-            if text.len() as u64 > LARGEST_CFG {
-                let rule = "the configuration is larger than any";
-                return Err(self.account.at_line(self.line, rule));
-            }
-        }
-        Ok((text, None))
     }
 }
 

@@ -6,8 +6,6 @@ mod cfg;
 mod dat;
 mod files;
 
-use std::io::Read;
-
 pub use cfg::{DEVICE, STATION};
 pub use dat::Dat;
 pub use files::{combined, is_combined, is_pair, open};
@@ -28,18 +26,18 @@ const OFF: f64 = 0.5;
 const WRAP: f64 = 4_294_967_296.0;
 
 /// Samples of a recording, its channels as a mapping has them.
-pub struct ComtradeRows<R> {
-    pub dat: Dat<R>,
+pub struct ComtradeRows {
+    pub dat: Dat,
     /// What is taken of it.
     pub pick: Pick,
     /// First stamp, ticks.
     first: Option<f64>,
 }
 
-impl<R: Read> ComtradeRows<R> {
+impl ComtradeRows {
     /// Finds the channels of `mapping`, or without one those that are named as in a stream.
     pub fn new(
-        dat: Dat<R>,
+        dat: Dat,
         mapping: Option<&Mapping>,
         sensors: &SensorsConfig,
     ) -> Result<Self, InputError> {
