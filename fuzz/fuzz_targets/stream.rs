@@ -3,11 +3,12 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_files::stream::{Even, Meter, Records};
+use touchdown_files::stream::{Account, Even, Records};
 
 fuzz_target!(|bytes: &[u8]| {
-    let records = Records::new("fuzz", bytes, &Meter::default());
-    match records.and_then(|it| Even::of_rows("fuzz", it, 1)) {
+    let account = Account::of("fuzz");
+    let records = Records::new(bytes, &account);
+    match records.and_then(|it| Even::of_rows(&account, it, 1)) {
         Ok(rows) => {
             let rate = rows.rate;
             assert!((99.0..=201e3).contains(&rate), "{rate}");

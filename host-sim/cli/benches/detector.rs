@@ -4,7 +4,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use touchdown_core::monitor::{Monitor, MonitorState};
 use touchdown_core::sample::Sample;
-use touchdown_files::stream::{Meter, Records, to_sample};
+use touchdown_files::stream::{Account, Records, to_sample};
 use touchdown_run::drop;
 use touchdown_run::target::Target;
 use touchdown_scene::Scene;
@@ -13,7 +13,7 @@ fn samples(scene: &Scene) -> Vec<Sample> {
     let (_, stream) =
         drop::by_reference(scene, &Target::Host, Some(Vec::new())).expect("valid scene");
     let bytes = stream.expect("memory").expect("a stream");
-    Records::new("drop", &bytes[..], &Meter::default())
+    Records::new(&bytes[..], &Account::of("drop"))
         .expect("own stream")
         .map(|row| {
             to_sample(

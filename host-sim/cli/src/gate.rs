@@ -10,6 +10,7 @@ use touchdown_base::interrupt::{self, Registered};
 use touchdown_base::output::{self, Output};
 use touchdown_base::paint::Paint;
 use touchdown_base::plain::shown;
+use touchdown_files::recording::is_pair;
 
 /// The files of a command, by the options that name them.
 #[derive(Debug, Default)]
@@ -33,19 +34,16 @@ impl Gate {
         option: &'static str,
         files: impl IntoIterator<Item = F>,
     ) -> Self {
-        for file in files {
-            let there = Some(file.as_ref()).filter(|it| it.exists());
-            self.inputs
-                .extend(there.and_then(|it| Named::new(option, it)));
-        }
+        let there = files.into_iter().filter(|it| it.as_ref().exists());
+        let named = there.filter_map(|it| Named::new(option, it.as_ref()));
+        self.inputs.extend(named);
         self
     }
 
     /// A recording: with the other file of a COMTRADE pair.
     pub fn reads_recording(mut self, option: &'static str, file: &str) -> Self {
         let path = Path::new(file);
-        let ending = path.extension().map(|it| it.to_ascii_lowercase());
-        if ending.is_some_and(|it| it == "cfg" || it == "dat") {
+        if is_pair(path) {
             let endings = ["cfg", "CFG", "dat", "DAT"];
             self = self.reads(option, endings.map(|it| path.with_extension(it)));
         }
@@ -74,9 +72,9 @@ impl Gate {
         option: &'static str,
         files: impl IntoIterator<Item = F>,
     ) -> Self {
-        let named = files.into_iter();
-        let named = named.filter_map(|it| Named::new(option, it.as_ref()));
-        self.outputs.extend(named);
+        let files = files.into_iter();
+        self.outputs
+            .extend(files.filter_map(|it| Named::new(option, it.as_ref())));
         self
     }
 
@@ -119,23 +117,20 @@ impl Gate {
         let outputs: Vec<_> = self.outputs.iter().chain(&redirected).collect();
         for (index, output) in outputs.iter().enumerate() {
             let same = |other: &&Named| other.file == output.file;
+            let clash = |[first, second]: [&Named; 2], rule: &str| {
+                let (first, second) = (&first.shown, &second.shown);
+                let rule = format!("{first} and {second} are the same file: {rule}");
+                Err(Failure::Usage(rule))
+            };
             if let Some(input) = self.inputs.iter().find(same) {
-                let rule = "an output must not replace an input";
-                return Err(clash(output, input, rule));
+                return clash([output, input], "an output must not replace an input");
             }
             if let Some(other) = outputs[..index].iter().copied().find(same) {
-                return Err(clash(other, output, "each output needs a file of its own"));
+                return clash([other, output], "each output needs a file of its own");
             }
         }
         Ok(())
     }
-}
-
-fn clash(first: &Named, second: &Named, rule: &str) -> Failure {
-    Failure::Usage(format!(
-        "{} and {} are the same file: {rule}",
-        first.shown, second.shown
-    ))
 }
 
 /// A file and who names it.
@@ -217,17 +212,16 @@ impl Outputs {
         option: &str,
         text: impl FnOnce() -> serde_json::Result<String>,
     ) -> Result<(), Failure> {
-        let Some(out) = self.file(option) else {
-            return Ok(());
-        };
-        let text = text().map_err(io::Error::from);
-        out.put(&text.map_err(Failure::output(out.name()))?)
+        self.file(option).map_or(Ok(()), |out| {
+            let text = text().map_err(io::Error::from);
+            out.put(&text.map_err(Failure::output(out.name()))?)
+        })
     }
 
     /// Further outputs, which take their names with the others.
     pub fn add(&mut self, option: &'static str, outputs: Vec<Output>) {
-        self.files
-            .extend(outputs.into_iter().map(|out| (option, out)));
+        let outputs = outputs.into_iter().map(|out| (option, out));
+        self.files.extend(outputs);
     }
 
     /// Leaves the output of an option as it was.
@@ -242,18 +236,17 @@ impl Outputs {
     }
 
     /// Gives the files their names, all or none; says `text`, and which.
-    pub fn finish(self, text: &str) -> Result<(), Failure> {
-        self.finish_with(|files| text.to_owned() + files)
+    pub fn finish(self, text: impl FnOnce(Paint) -> String) -> Result<(), Failure> {
+        let text = text(self.paint());
+        self.finish_with(|files| text + files)
     }
 
     /// The same with a text of the lines that say which.
     pub fn finish_with(self, text: impl FnOnce(&str) -> String) -> Result<(), Failure> {
         let aside = self.is_taken();
         let files: Vec<_> = self.files.into_iter().map(|(_, out)| out).collect();
-        let named = files.iter().filter(|out| out.name() != STDOUT);
-        let told: String = named
-            .map(|out| format!("wrote {}\n", shown(out.name())))
-            .collect();
+        let named = files.iter().map(Output::name).filter(|it| *it != STDOUT);
+        let told: String = named.map(|it| format!("wrote {}\n", shown(it))).collect();
         output::commit(files)?;
         let text = text(&told);
         if aside {

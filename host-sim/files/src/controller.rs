@@ -69,16 +69,17 @@ pub fn table(outputs: &[OutputsFrom], paint: Paint) -> String {
     let mut text = paint.bold(&head) + "\n";
     let level = |on| if on { "on" } else { "off" };
     for it in outputs.iter().take(LISTED) {
-        let line = format!(
-            "{:>13.4}{:>6}{:>10}{:>8}{:>7}  {:<10} {}",
-            it.time_s * 1e3,
-            level(it.outputs.run),
-            level(it.outputs.no_brake),
-            level(it.outputs.permit),
-            level(it.outputs.ready),
-            <&str>::from(it.mode),
-            it.cause.map_or("", <&str>::from),
-        );
+        let Outputs {
+            run,
+            no_brake,
+            permit,
+            ready,
+        } = it.outputs;
+        let [run, no_brake, permit, ready] = [run, no_brake, permit, ready].map(level);
+        let (mode, cause) = (<&str>::from(it.mode), it.cause.map_or("", <&str>::from));
+        let time = it.time_s * 1e3;
+        let line =
+            format!("{time:>13.4}{run:>6}{no_brake:>10}{permit:>8}{ready:>7}  {mode:<10} {cause}");
         text += &format!("{}\n", line.trim_end());
     }
     if outputs.len() > LISTED {

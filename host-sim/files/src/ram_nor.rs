@@ -38,10 +38,9 @@ impl NorFlash for RamNor {
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
         check_write(self, offset, bytes.len())?;
-        let held = &mut self.0[offset as usize..][..bytes.len()];
-        held.iter_mut()
-            .zip(bytes)
-            .for_each(|(held, new)| *held &= new);
+        for (held, new) in self.0[offset as usize..].iter_mut().zip(bytes) {
+            *held &= new;
+        }
         Ok(())
     }
 }

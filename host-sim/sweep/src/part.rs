@@ -14,7 +14,7 @@ use super::plan::Plan;
 use super::record::columns;
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, LARGEST_TOML, reason};
-use touchdown_files::stream::{Bounded, Meter};
+use touchdown_files::stream::{Account, Bounded};
 
 /// Drops of a block. Blocks are dealt to the parts in turn, so that each part has its share of slow drops.
 const BLOCK: u64 = 256;
@@ -122,7 +122,7 @@ impl PartReader {
             columns: columns(plan).len(),
             rows: csv::ReaderBuilder::new()
                 .flexible(true)
-                .from_reader(Bounded::new(file, &Meter::default()))
+                .from_reader(Bounded::new(file, &Account::default()))
                 .into_records(),
             name,
         })

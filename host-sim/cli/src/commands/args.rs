@@ -81,29 +81,10 @@ pub(super) enum Command {
     #[command(after_help = help!("force"))]
     Force(ForceArgs),
     /// Run the model at its extremes: what was measured, the limit, and whether it holds
-    ///
-    /// Steps of 1 us to 1 ms; restitution, friction, gap, spin and gravity at their ends; starts on,
-    /// along and into the wall; the cases between two motions; a whole bounce series or an endless
-    /// growth of whirl in one step; 10^9 ticks; NaN, infinity and the smallest numbers. Each in f64 and
-    /// in f32.
-    ///
-    /// Every measure is held against the independent reference, a closed form or a law of physics;
-    /// "used" is how much of the limit it takes. rho0 is the gap, T = sqrt(rho0/g), V = sqrt(g rho0);
-    /// the target of an impact is 1e-14 + 20 A 2.2e-16 (f64) and 5e-6 + 50 A 6e-8 (f32) in these units,
-    /// A being the growth of a change at the start. Where the rotor spins, the limit of the energy
-    /// contains the last digit of its spin.
-    ///
-    /// Exit status: 0 every limit holds, 1 one does not, 2 bad usage.
-    #[command(after_help = help!("limits"))]
+    #[command(long_about = help!("limits_long"), after_help = help!("limits"))]
     Limits(LimitsArgs),
     /// Measure the detector over seeded campaigns: latency against the bound, misses, false events
-    ///
-    /// Truth is the independent reference, and what was put in; bounds are closed forms at one false
-    /// alarm in 10^9 samples. docs/know/score.md says what each group does. The same seeds give the same
-    /// numbers on any number of cores.
-    ///
-    /// Exit status: 0 every target is reached, 1 one is not, 2 bad usage.
-    #[command(after_help = help!("score"))]
+    #[command(long_about = help!("score_long"), after_help = help!("score"))]
     Score(ScoreArgs),
     /// Look at scenes
     #[command(subcommand, after_help = help!("scene"))]
@@ -154,7 +135,7 @@ pub(super) struct RigArgs {
     pub keep: Option<String>,
     /// Part of the link's bytes that are flipped, lost or invented
     #[arg(long, value_name = "PART", default_value_t = 0.0,
-          value_parser = number(|it| (0.0..=1.0).contains(&it), "a number from 0 to 1"))]
+          value_parser = |it: &str| number(it, |it| (0.0..=1.0).contains(&it), "a number from 0 to 1"))]
     pub noise: f64,
     /// As fast as the emulator can, not at the pace of the samples
     #[arg(long)]
@@ -185,7 +166,7 @@ pub(super) struct ReplayArgs {
     #[arg(long)]
     pub power_on: bool,
     /// Order the controller to clear what is latched at this time of the recording, s; may be given again
-    #[arg(long, value_name = "T", value_parser = number(f64::is_finite, "a time in s"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = |it: &str| number(it, f64::is_finite, "a time in s"), allow_negative_numbers = true)]
     pub clear_at: Vec<f64>,
     #[command(flatten)]
     pub reading: ReadingArgs,
@@ -200,7 +181,7 @@ pub(super) struct ReadingArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
     /// Make samples of another rate of it, Hz: linear between neighbours, none across gaps
-    #[arg(long, value_name = "RATE", value_parser = number(is_rate, "100 to 200000 Hz"))]
+    #[arg(long, value_name = "RATE", value_parser = |it: &str| number(it, is_rate, "100 to 200000 Hz"))]
     resample: Option<f64>,
 }
 
@@ -227,10 +208,10 @@ pub(super) struct CompareArgs {
     #[arg(long)]
     pub scene: String,
     /// Most that an onset may differ, ms
-    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = tolerance())]
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = tolerance)]
     pub within_ms: f64,
     /// Most that the speed of an impact may differ, % of the faster
-    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = tolerance())]
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = tolerance)]
     pub within_percent: f64,
     /// Events side by side as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -245,32 +226,18 @@ pub(super) struct CompareArgs {
     pub columns_b: Option<PathBuf>,
 }
 
-impl CompareArgs {
-    /// How each is read.
-    pub fn readings(&self) -> Result<[Reading; 2], Failure> {
-        let first = self.reading.load()?;
-        let mut second = first.clone();
-        if let Some(path) = &self.columns_b {
-            second.mapping = Some(Mapping::load(path)?);
-        }
-        Ok([first, second])
-    }
-}
-
 /// Reads a number that `is_right`; `rule` says what that is.
-fn number(
-    is_right: fn(f64) -> bool,
-    rule: &str,
-) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + use<> {
-    let rule = rule.to_owned();
-    move |text| {
-        let number = text.parse().ok().filter(|it| is_right(*it));
-        number.ok_or_else(|| rule.clone())
-    }
+fn number(text: &str, is_right: impl Fn(f64) -> bool, rule: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|it| is_right(*it));
+    number.ok_or_else(|| rule.to_owned())
 }
 
-fn tolerance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
-    number(|it| it.is_finite() && it >= 0.0, "a number, 0 or more")
+fn tolerance(text: &str) -> Result<f64, String> {
+    number(
+        text,
+        |it| it.is_finite() && it >= 0.0,
+        "a number, 0 or more",
+    )
 }
 
 #[derive(Args, Clone, Debug)]
@@ -472,7 +439,7 @@ pub(super) struct CalibrateArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub config: Option<String>,
     /// Radial clearance, mm, as it was measured, in place of the one told
-    #[arg(long, value_name = "MM", value_parser = clearance())]
+    #[arg(long, value_name = "MM", value_parser = clearance)]
     pub clearance: Option<f64>,
     /// What is believed: the clearance, or the gain of each plane's first axis
     #[arg(long, value_enum, default_value_t)]
@@ -505,10 +472,10 @@ pub(super) enum Scale {
 }
 
 /// A clearance, mm.
-fn clearance() -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+fn clearance(text: &str) -> Result<f64, String> {
     let (least, most) = CLEARANCE_MM.into_inner();
     let rule = format!("{least} to {most} mm");
-    number(|it| CLEARANCE_MM.contains(&it), &rule)
+    number(text, |it| CLEARANCE_MM.contains(&it), &rule)
 }
 
 #[derive(Args, Clone, Debug)]

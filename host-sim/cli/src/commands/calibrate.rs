@@ -48,20 +48,19 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     let believed = (args.scale == Scale::Clearance).then_some(f64::from(*told_clearance));
     let planes = check(args, &settings.monitor, &scene, believed)?;
     let title = format!("Commissioning check: {name}");
-    out.json("--json", || {
-        json::text(&json!({
-            "date": text_of_day(date),
-            "machine": name,
-            "scale": args.scale,
-            "planes": planes.iter().map(|it| (it.name, it)).collect::<BTreeMap<_, _>>(),
-        }))
-    })?;
+    let told = json!({
+        "date": text_of_day(date),
+        "machine": name,
+        "scale": args.scale,
+        "planes": planes.iter().map(|it| (it.name, it)).collect::<BTreeMap<_, _>>(),
+    });
+    out.json("--json", || json::text(&told))?;
     out.put("--report", || page::page(&title, &planes))?;
     let mut text: String = planes.iter().map(page::text).collect();
     let why = |it: &Checked| Some(format!("plane {}: {}", it.name, it.refused.as_ref()?));
     if let Some(why) = planes.iter().find_map(why) {
         out.leave("--write");
-        out.finish(&text)?;
+        out.finish(|_| text)?;
         return Err(Failure::Check(format!("{}: {why}", shown(&args.recording))));
     }
     text += &record(&mut settings.monitor, date, &planes);
@@ -70,7 +69,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
         valid.map_err(|it| Failure::Check(format!("{file}: {it}")))?;
     }
     out.put("--write", || configuration::record_text(&settings, name))?;
-    out.finish(&text)
+    out.finish(|_| text)
 }
 
 /// What the machine is told, and how its recordings are read: from the scene or the configuration.
@@ -172,9 +171,9 @@ fn record(monitor: &mut MonitorConfig, date: u32, planes: &[Checked]) -> String 
     if apart <= f64::from(monitor.detector.tuning.wall_tolerance) {
         return String::new();
     }
-    format!(
-        "warning: the planes' radii differ by {:.0} % from their mean, which is set as the clearance: more \
-         than wall_tolerance\n",
+    let apart = format!(
+        "the planes' radii differ by {:.0} % from their mean",
         100.0 * apart
-    )
+    );
+    format!("warning: {apart}, which is set as the clearance: more than wall_tolerance\n")
 }

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::args::CompareArgs;
-use super::{load, warn};
+use super::{holds, load, warn};
 use crate::gate::Gate;
 use touchdown_base::failure::Failure;
+use touchdown_files::recording::Mapping;
 use touchdown_page::compare::page;
 use touchdown_page::json;
 use touchdown_run::compare::{Tolerance, compare, table};
@@ -22,7 +23,11 @@ pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
         .writes("--report", &args.report)
         .open()?;
     let scene = load(&args.scene)?;
-    let [first, second] = args.readings()?;
+    let first = args.reading.load()?;
+    let mut second = first.clone();
+    if let Some(path) = &args.columns_b {
+        second.mapping = Some(Mapping::load(path)?);
+    }
     let files = [&args.first, &args.second].map(Path::new);
     let tolerance = Tolerance {
         time_s: args.within_ms * 1e-3,
@@ -32,12 +37,8 @@ pub(super) fn compare_recordings(args: &CompareArgs) -> Result<(), Failure> {
     warn(&comparison.warnings);
     out.json("--json", || json::text(&comparison))?;
     out.put("--report", || page(&scene, &comparison))?;
-    let text = table(&comparison, out.paint());
-    out.finish(&text)?;
-    match comparison.beyond {
-        0 => Ok(()),
-        _ => Err(Failure::Check(
-            "the recordings differ beyond the tolerance".to_owned(),
-        )),
-    }
+    out.finish(|paint| table(&comparison, paint))?;
+    holds(comparison.beyond == 0, || {
+        "the recordings differ beyond the tolerance".to_owned()
+    })
 }

@@ -83,10 +83,8 @@ pub(super) fn config(args: &ConfigArgs) -> Result<(), Failure> {
 
 /// The settings of a file.
 pub(super) fn load(name: &str) -> Result<Settings, Failure> {
-    Ok(parse(
-        name,
-        &InputError::read(Path::new(name), LARGEST_TOML)?,
-    )?)
+    let text = InputError::read(Path::new(name), LARGEST_TOML)?;
+    Ok(parse(name, &text)?)
 }
 
 /// For people.
@@ -95,11 +93,9 @@ fn summary(port: &Port, changed: &[Difference]) -> String {
         return format!("{port}: nothing to change, nothing sent\n");
     }
     let value = |it: &Option<String>| it.clone().unwrap_or_else(|| "none".to_owned());
-    let lines = changed
-        .iter()
-        .map(|it| format!("  {}: {} -> {}\n", it.key, value(&it.from), value(&it.to)));
-    format!(
-        "{port}: the controller has restarted with another configuration\n{}",
-        lines.collect::<String>()
-    )
+    let mut text = format!("{port}: the controller has restarted with another configuration\n");
+    for it in changed {
+        text += &format!("  {}: {} -> {}\n", it.key, value(&it.from), value(&it.to));
+    }
+    text
 }

@@ -34,7 +34,7 @@ pub(super) fn measure(args: &ForceArgs) -> Result<(), Failure> {
     out.put("--report", || {
         touchdown_force::page(&recording, &measurement)
     })?;
-    out.finish(&touchdown_force::text(name, &measurement))
+    out.finish(|_| touchdown_force::text(name, &measurement))
 }
 
 fn write_example(folder: &str) -> Result<(), Failure> {

@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::event::{self, KeyCode, KeyModifiers};
 #[cfg(unix)]
 use signal_hook::consts::signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 use super::args::LiveArgs;
 use crate::gate::Gate;
-use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, record};
+use crate::live::{Link, Said, Update, View, Watched, Watcher, draw, line, open_record};
 use touchdown_base::failure::{Failure, STDOUT};
 use touchdown_base::paint::Paint;
 use touchdown_files::link::Port;
@@ -31,7 +31,7 @@ pub(super) fn live(args: &LiveArgs) -> Result<(), Failure> {
     let port = Port::of(&args.port);
     let file = args.json.as_deref().filter(|it| *it != STDOUT);
     Gate::new().claims("--json", file).open()?;
-    let record = file.map(record::open).transpose()?;
+    let record = file.map(open_record).transpose()?;
     let on_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
     let lines = args.json.as_deref() == Some(STDOUT) || !on_terminal;
     let mut session = Session {
@@ -97,8 +97,8 @@ impl Session<'_> {
         }
         let line = line(update, &self.watched) + "\n";
         if let Some((file, name)) = &mut self.record {
-            file.write_all(line.as_bytes())
-                .map_err(Failure::output(name))?;
+            let written = file.write_all(line.as_bytes());
+            written.map_err(Failure::output(name))?;
         }
         Ok(Some(line))
     }
@@ -133,25 +133,24 @@ impl Session<'_> {
                 self.take(update)?;
             }
             let now = self.watcher.now();
-            let (watched, at) = held
-                .as_ref()
-                .map_or((&self.watched, now), |it| (&it.0, it.1));
-            terminal
-                .draw(|frame| draw(frame, &view, watched, at))
-                .map_err(&fail)?;
+            let (watched, at) = match &held {
+                Some((watched, at)) => (watched, *at),
+                None => (&self.watched, now),
+            };
+            let drawn = terminal.draw(|frame| draw(frame, &view, watched, at));
+            drawn.map_err(&fail)?;
             if !event::poll(PICTURE).map_err(&fail)? {
                 continue;
             }
-            let Event::Key(key) = event::read().map_err(&fail)? else {
+            let event = event::read().map_err(&fail)?;
+            let Some(key) = event.as_key_press_event() else {
                 continue;
             };
+            // The terminal passes an interrupt on as a key.
+            let is_interrupt = key.modifiers.contains(KeyModifiers::CONTROL);
             match key.code {
-                _ if key.kind != KeyEventKind::Press => {}
                 KeyCode::Char('q') | KeyCode::Esc => return Ok(()),
-                // The terminal passes it on as a key.
-                KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => {
-                    return Ok(());
-                }
+                KeyCode::Char('c') if is_interrupt => return Ok(()),
                 KeyCode::Char(' ') => {
                     held = held.is_none().then(|| (self.watched.clone(), now));
                     view.held = held.is_some();

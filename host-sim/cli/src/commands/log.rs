@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::args::{ChosenArgs, DumpArgs, ExportFormat, LogCommand};
+use super::holds;
 use super::order::order;
 use crate::gate::{Gate, Outputs};
 use touchdown_base::failure::Failure;
@@ -40,11 +41,8 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
             export(&episode(chosen)?, *format, out)
         }
         LogCommand::Verify(args) => {
-            if is_sound(&all(args)?) {
-                return Ok(());
-            }
-            let rule = format!("{}: an episode is damaged", args.file);
-            Err(Failure::Check(rule))
+            let is_sound = is_sound(&all(args)?);
+            holds(is_sound, || format!("{}: an episode is damaged", args.file))
         }
         LogCommand::Lock(args) => order(Act::Lock(args.episode), &args.order),
         LogCommand::Unlock(args) => order(Act::Unlock(args.episode), &args.order),
@@ -79,8 +77,7 @@ fn tell(
     told: impl FnOnce(Paint) -> String,
 ) -> Result<(), Failure> {
     out.json("--json", || text(what))?;
-    let told = told(out.paint());
-    out.finish(&told)
+    out.finish(told)
 }
 
 fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure> {
@@ -94,10 +91,9 @@ fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure>
         None => all.next(),
     };
     found.ok_or_else(|| {
-        let what = number.map_or("no episode".to_owned(), |it| format!("no episode {it}"));
-        Failure::Usage(format!(
-            "{file}: {what}; touchdown log list {file} shows what there is"
-        ))
+        let what = number.map_or(String::new(), |it| format!(" {it}"));
+        let rule = format!("touchdown log list {file} shows what there is");
+        Failure::Usage(format!("{file}: no episode{what}; {rule}"))
     })
 }
 
@@ -132,5 +128,5 @@ fn export(episode: &Episode, format: ExportFormat, mut out: Outputs) -> Result<(
             out.put(DAT, || dat)?;
         }
     }
-    out.finish("")
+    out.finish(|_| String::new())
 }

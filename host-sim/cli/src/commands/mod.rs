@@ -5,17 +5,14 @@ mod calibrate;
 mod compare;
 mod config;
 mod force;
-mod limits;
+mod lab;
 mod live;
 mod log;
 mod order;
-mod paper;
 #[cfg(unix)]
 mod rig;
 mod scene;
-mod score;
 mod sweep;
-mod trade;
 
 pub use args::Cli;
 
@@ -54,12 +51,12 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Drop(args)) => drop_scene(&args),
         Some(Command::Replay(args)) => replay_stream(&args),
         Some(Command::Compare(args)) => compare::compare_recordings(&args),
-        Some(Command::Trade(args)) => trade::table(&args),
-        Some(Command::Paper(args)) => paper::check(&args),
+        Some(Command::Trade(args)) => lab::measure_trade(&args),
+        Some(Command::Paper(args)) => lab::check_paper(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Force(args)) => force::measure(&args),
-        Some(Command::Limits(args)) => limits::check(&args),
-        Some(Command::Score(args)) => score::measure(&args),
+        Some(Command::Limits(args)) => lab::check_limits(&args),
+        Some(Command::Score(args)) => lab::measure_score(&args),
         Some(Command::Sweep(args)) => sweep::sweep(&args),
         #[cfg(unix)]
         Some(Command::Rig(args)) => rig::rig(&args),
@@ -70,9 +67,8 @@ pub fn main() -> Result<(), Failure> {
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "touchdown", &mut script);
-            Gate::new()
-                .open()?
-                .finish(&String::from_utf8_lossy(&script))
+            let script = String::from_utf8_lossy(&script).into_owned();
+            Gate::new().open()?.finish(|_| script)
         }
         Some(Command::Scene(what)) => scene::look(&what),
     }
@@ -98,8 +94,7 @@ fn drop_scene(args: &DropArgs) -> Result<(), Failure> {
     stream.map_err(Failure::output(args.stream.as_deref().unwrap_or_default()))?;
     out.json("--json", || json::drop(&scene, &outcome))?;
     out.put("--report", || report::render(&scene, &outcome))?;
-    let text = timeline::drop(&scene, &outcome, out.paint());
-    out.finish(&(why + &text))
+    out.finish(|paint| why + &timeline::drop(&scene, &outcome, paint))
 }
 
 /// Takes the cheapest model that gives what the scene asks, where it leaves the model open, or what comes nearest; why,
@@ -149,8 +144,17 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
     let format = replay.format.map_or(String::new(), |it| {
         format!("{}: {it}, {} Hz\n", shown(&args.stream), replay.rate)
     });
-    let controller = replay.conduct.told(replay.timebase).text(out.paint());
-    out.finish(&(format + &timeline::replay(&args.stream, detection) + &controller))
+    let controller = replay.conduct.told(replay.timebase);
+    let told = format + &timeline::replay(&args.stream, detection);
+    out.finish(|paint| told + &controller.text(paint))
+}
+
+/// Fails with `rule` where a check does not hold.
+fn holds(is_held: bool, rule: impl FnOnce() -> String) -> Result<(), Failure> {
+    match is_held {
+        true => Ok(()),
+        false => Err(Failure::Check(rule())),
+    }
 }
 
 fn load(name: &str) -> Result<Scene, Failure> {

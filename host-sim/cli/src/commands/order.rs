@@ -33,7 +33,7 @@ pub(super) fn order(act: Act, args: &OrderArgs) -> Result<(), Failure> {
         "port": port.to_string(), "order": order, "episode": episode, "done": why.is_none(), "why": why,
     });
     out.json("--json", || json::text(&told))?;
-    out.finish(&format!("{port}: {done}\n"))?;
+    out.finish(|_| format!("{port}: {done}\n"))?;
     ordered.map_err(|it| it.at(&port))
 }
 

@@ -51,11 +51,9 @@ pub(super) fn rig(args: &RigArgs) -> Result<(), Failure> {
             fast: args.fast,
         },
     )?;
-    print(&format!(
-        "link: tcp:{0}\n    touchdown live tcp:{0}\nlog: {1}\n{ORDERS}\n",
-        rig.address,
-        log.display()
-    ))?;
+    let (address, log) = (rig.address, log.display());
+    let where_to = format!("link: tcp:{address}\n    touchdown live tcp:{address}\nlog: {log}\n");
+    print(&format!("{where_to}{ORDERS}\n"))?;
     obey(&rig, &lines())?;
     rig.stop()
 }
@@ -107,9 +105,8 @@ fn order(line: &str) -> Result<Option<Order>, &'static str> {
         ["fault", channel, kind] => {
             let channel = (0..CHANNELS).find(|it| channel_name(*it) == channel);
             let channel = channel.ok_or("the channels are ax, ay, bx, by")?;
-            let failing = kind.parse();
             let kinds = "the kinds are open, short, dropped, stuck, reversed, swapped";
-            Order::Spoil(channel.into(), failing.map_err(|_| kinds)?)
+            Order::Spoil(channel.into(), kind.parse().map_err(|_| kinds)?)
         }
         _ => return Err(ORDERS),
     }))

@@ -42,12 +42,14 @@ pub(super) fn look(what: &SceneCommand) -> Result<(), Failure> {
             let mut scene = load(name)?;
             let why = choose(&mut scene)?;
             let parts = (*drops > 0).then(|| parts::run(&scene, Some(*drops as usize)));
-            let worth = parts
-                .as_ref()
-                .map(|it| "\n".to_owned() + &parts::text(it, out.paint()));
             let explanation = explanation(&scene);
-            out.json("--json", || text(&Explained { explanation, parts }))?;
-            out.finish(&(why + &explain(&scene) + &worth.unwrap_or_default()))
+            let explained = Explained { explanation, parts };
+            out.json("--json", || text(&explained))?;
+            out.finish(|paint| {
+                let worth = explained.parts.as_ref();
+                let worth = worth.map(|it| "\n".to_owned() + &parts::text(it, paint));
+                why + &explain(&scene) + &worth.unwrap_or_default()
+            })
         }
         SceneCommand::List { json } => {
             let mut out = Gate::new().writes("--json", json).open()?;
@@ -63,7 +65,7 @@ pub(super) fn look(what: &SceneCommand) -> Result<(), Failure> {
                 });
             }
             out.json("--json", || text(&scenes))?;
-            out.finish(&lines)
+            out.finish(|_| lines)
         }
     }
 }

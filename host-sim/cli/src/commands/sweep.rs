@@ -12,30 +12,23 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     if let Some(SweepCommand::Merge { folders, json }) = &args.command {
         return merge(folders, json);
     }
+    let usage = |rule: &str| Err(Failure::Usage(rule.to_owned()));
     let Some(name) = &args.plan else {
-        return Err(Failure::Usage(
-            "sweep needs a plan: touchdown sweep PLAN.toml".to_owned(),
-        ));
+        return usage("sweep needs a plan: touchdown sweep PLAN.toml");
     };
     if args.shard.is_some() && args.json.is_some() {
-        let rule = "a part has no result of its own: give --json to sweep merge";
-        return Err(Failure::Usage(rule.to_owned()));
+        return usage("a part has no result of its own: give --json to sweep merge");
     }
     let plan = Plan::load(name)?;
-    let folder = args.out.clone().unwrap_or_else(|| {
-        let stem = Path::new(name)
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy();
-        format!("{stem}-sweep")
-    });
+    let stem = Path::new(name).file_stem().unwrap_or_default();
+    let folder = format!("{}-sweep", stem.to_string_lossy());
+    let folder = args.out.clone().unwrap_or(folder);
     let gate = gate(&folder, &args.json)
         .reads("PLAN", [name])
         .reads("the plan's scene", &plan.scene_file);
     if let Some(rule) = plan.find {
         if args.shard.is_some() {
-            let rule = "a search is not divided: run it without --shard";
-            return Err(Failure::Usage(rule.to_owned()));
+            return usage("a search is not divided: run it without --shard");
         }
         let out = gate.open()?;
         let (tried, results) = find(&plan, rule, Path::new(&folder))?;
@@ -49,10 +42,8 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         note(&format!("{folder} had {had} drops already\n"));
     }
     if let Some(Part { part, parts }) = args.shard {
-        let text = format!(
-            "part {part} of {parts} is done; when all are: touchdown sweep merge {folder}\n"
-        );
-        return out.finish(&text);
+        let next = format!("when all are: touchdown sweep merge {folder}");
+        return out.finish(|_| format!("part {part} of {parts} is done; {next}\n"));
     }
     finish(&plan, write(&plan, &paths, Path::new(&folder))?, out)
 }
@@ -73,11 +64,8 @@ fn gate(folder: &str, json: &Option<String>) -> Gate {
 }
 
 fn finish(plan: &Plan, results: Results, mut out: Outputs) -> Result<(), Failure> {
-    let mut text = table(plan, &results.points, out.paint());
-    if let Some(found) = &results.found {
-        text += &format!("{}\n", found.told());
-    }
     out.put("--json", || results.json)?;
     out.add("--out", results.outputs);
-    out.finish(&text)
+    let found = results.found.map(|it| it.told() + "\n");
+    out.finish(|paint| table(plan, &results.points, paint) + &found.unwrap_or_default())
 }

@@ -1,15 +1,23 @@
-//! An update as a line of JSON, for scripts and records. Fields: `docs/use/live.md`.
+//! An update as a line of JSON, for scripts and records, and a record: a file of such lines, added to by every run.
+//! Fields: `docs/use/live.md`.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Read};
 
 use serde_json::{Value, json};
 use touchdown_core::event::{Notice, Ordered};
 use touchdown_protocol::link::State;
 
-use super::update::{Said, Update};
 use super::watched::Watched;
+use super::watcher::{Said, Update};
+use touchdown_base::failure::Failure;
 use touchdown_base::plain;
 use touchdown_files::controller::AlarmAt;
 use touchdown_files::link::refused_why;
 use touchdown_run::detection::{declared, forecast, touch};
+
+/// Longer than any line, bytes.
+const LONGEST: u64 = 1 << 16;
 
 /// The line without its end; `watched` has taken in what came before.
 pub fn line(update: &Update, watched: &Watched) -> String {
@@ -132,4 +140,26 @@ fn order(ordered: &Ordered, watched: &Watched) -> Value {
         "sample": ordered.sample,
         "time_s": watched.timebase().time(ordered.sample as f64),
     })
+}
+
+/// Opens a record to add to it: a new file, or one that such a record begins. What was recorded before stays.
+pub fn open_record(name: &str) -> Result<File, Failure> {
+    let fail = Failure::output(name);
+    let there = fs::metadata(name).ok();
+    let has_text = there.is_some_and(|it| it.is_file() && it.len() > 0);
+    if has_text && !is_record(name).map_err(&fail)? {
+        let rule = "is no record of touchdown live, and would be spoilt by one";
+        return Err(fail(io::Error::other(rule)));
+    }
+    let mut how = OpenOptions::new();
+    how.create(true).append(true).open(name).map_err(fail)
+}
+
+/// Whether the first line is one of [`line`].
+fn is_record(name: &str) -> io::Result<bool> {
+    let mut line = Vec::new();
+    let mut text = BufReader::new(File::open(name)?.take(LONGEST));
+    text.read_until(b'\n', &mut line)?;
+    let line = serde_json::from_slice::<Value>(&line).unwrap_or_default();
+    Ok(line["at_s"].is_number() && line["said"].is_string())
 }

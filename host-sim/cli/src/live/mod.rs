@@ -2,23 +2,18 @@
 //!
 //! | file | says |
 //! |---|---|
-//! | `watcher` | a thread that holds the line, and opens it again |
-//! | `update` | what it passes on |
-//! | `line` | an update as a line of JSON |
-//! | `record` | the file of such lines |
+//! | `watcher` | a thread that holds the line, and opens it again; what it passes on |
+//! | `line` | that as a line of JSON, and the file of such lines |
 //! | `watched` | all that is known by now |
 //! | `view`, `orbit` | that on a terminal |
 
 mod line;
 mod orbit;
-pub mod record;
-mod update;
 mod view;
 mod watched;
 mod watcher;
 
-pub use line::line;
-pub use update::{Said, Update};
+pub use line::{line, open_record};
 pub use view::{View, draw};
 pub use watched::{Link, Watched};
-pub use watcher::Watcher;
+pub use watcher::{Said, Update, Watcher};

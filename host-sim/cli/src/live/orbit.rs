@@ -2,7 +2,7 @@
 
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::style::{Color, Style};
+use ratatui::style::Color;
 use ratatui::symbols::Marker;
 use ratatui::widgets::canvas::{Canvas, Circle, Points};
 use ratatui::widgets::{Block, Paragraph};
@@ -15,18 +15,11 @@ const HALF: f64 = 1.1;
 const DOTS: [f64; 2] = [2.0, 4.0];
 
 /// Draws the orbit of `plane` (0 is a).
-pub(super) fn orbit(
-    frame: &mut Frame<'_>,
-    area: Rect,
-    watched: &Watched,
-    plane: usize,
-    paint: bool,
-) {
+pub(super) fn orbit(frame: &mut Frame<'_>, area: Rect, watched: &Watched, plane: usize) {
     let name = ["a", "b"].get(plane).unwrap_or(&"?");
-    let clearance = watched
-        .settings
-        .map(|it| f64::from(it.monitor.detector.machine.clearance))
-        .filter(|it| *it > 0.0);
+    let told = watched.settings.map(|it| it.monitor.detector.machine);
+    let clearance = told.map(|it| f64::from(it.clearance));
+    let clearance = clearance.filter(|it| *it > 0.0);
     let title = clearance.map_or_else(
         || format!(" orbit, plane {name} "),
         |it| format!(" orbit, plane {name}, clearance {:.3} mm ", it * 1e3),
@@ -47,19 +40,16 @@ pub(super) fn orbit(
     // Round on the screen: the shorter side sets the scale.
     let short = wide.min(high).max(1.0);
     let [x, y] = [HALF * wide / short, HALF * high / short];
-    let colour = |it: Color| if paint { it } else { Color::Reset };
     let canvas = Canvas::default()
         .block(block)
         .marker(Marker::Braille)
-        .background_color(Color::Reset)
         .x_bounds([-x, x])
         .y_bounds([-y, y])
         .paint(|context| {
-            context.draw(&Circle::new(0.0, 0.0, 1.0, colour(Color::DarkGray)));
-            context.draw(&Points::new(old, colour(Color::Blue)));
+            context.draw(&Circle::new(0.0, 0.0, 1.0, Color::DarkGray));
+            context.draw(&Points::new(old, Color::Blue));
             context.layer();
-            context.draw(&Points::new(new, colour(Color::LightYellow)));
+            context.draw(&Points::new(new, Color::LightYellow));
         });
     frame.render_widget(canvas, area);
-    frame.buffer_mut().set_style(inside, Style::default());
 }

@@ -3,7 +3,7 @@
 use ratatui::Frame;
 use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
 use ratatui::layout::{Layout, Rect};
-use ratatui::style::{Color, Modifier, Style};
+use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 use touchdown_core::detect::Phase;
@@ -36,12 +36,11 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
     let [head, body, foot] = Layout::vertical([Length(1), Min(0), Length(1)]).areas(frame.area());
     let [left, right] = Layout::horizontal([Percentage(46), Fill(1)]).areas(body);
     let [status, events, episodes] = Layout::vertical([Length(14), Fill(3), Fill(2)]).areas(right);
-    let pen = Pen(view.paint);
-    frame.render_widget(Paragraph::new(headline(watched, now, pen)), head);
-    orbit(frame, left, watched, view.plane, view.paint);
-    list(frame, status, " now ", status_lines(watched, now, pen));
-    let (title, lines) = (" events: onset s, what, mm/s ", watched.events());
-    list(frame, events, title, lines.map(|it| event_line(it, pen)));
+    frame.render_widget(Paragraph::new(headline(watched, now)), head);
+    orbit(frame, left, watched, view.plane);
+    list(frame, status, " now ", status_lines(watched, now));
+    let title = " events: onset s, what, mm/s ";
+    list(frame, events, title, watched.events().map(event_line));
     let title = " episodes: number, at s, trigger ";
     list(frame, episodes, title, episode_lines(watched));
     let mut keys = KEYS.to_owned();
@@ -52,50 +51,37 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, watched: &Watched, now: f64) {
         keys += &format!("   recording to {name}");
     }
     frame.render_widget(Paragraph::new(keys), foot);
-}
-
-/// Colours, where they are wanted; what they say, the words say too.
-#[derive(Clone, Copy)]
-struct Pen(bool);
-
-impl Pen {
-    fn of(self, colour: Color, text: String) -> Span<'static> {
-        let colour = if self.0 { colour } else { Color::Reset };
-        Span::styled(text, Style::default().fg(colour))
-    }
-
-    fn bold(text: String) -> Span<'static> {
-        Span::styled(text, Style::default().add_modifier(Modifier::BOLD))
+    if !view.paint {
+        // What colours say, the words say too.
+        let all = frame.area();
+        let plain = Style::default().fg(Color::Reset);
+        frame.buffer_mut().set_style(all, plain);
     }
 }
 
-fn headline(watched: &Watched, now: f64, pen: Pen) -> Line<'static> {
+fn headline(watched: &Watched, now: f64) -> Line<'static> {
     let link = match &watched.link {
         Link::New => Span::raw("connecting"),
-        Link::Up(since) => pen.of(Color::Green, format!("connected for {:.0} s", now - since)),
-        Link::Down(since, why) => pen.of(
-            Color::Red,
-            format!("NOT CONNECTED for {:.0} s: {why}", now - since),
-        ),
+        Link::Up(since) => format!("connected for {:.0} s", now - since).green(),
+        Link::Down(since, why) => format!("NOT CONNECTED for {:.0} s: {why}", now - since).red(),
     };
     let head = format!(" touchdown live {}  ", watched.port);
-    Line::from(vec![Pen::bold(head), link])
+    Line::from(vec![head.bold(), link])
 }
 
-fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
+fn status_lines(watched: &Watched, now: f64) -> Vec<Line<'static>> {
     let Some(state) = watched.state() else {
         return vec![Line::raw("nothing heard yet")];
     };
     let (it, counters) = (state.outputs, &state.counters);
-    let rate = watched
-        .sample_rate()
-        .map_or("-".to_owned(), |it| format!("{it:.0}"));
+    let rate = watched.sample_rate();
+    let rate = rate.map_or("-".to_owned(), |it| format!("{it:.0}"));
     let nominal = watched.hello.as_ref().map_or(0.0, |it| it.sample_rate);
     let frames = watched.frame_rate(now);
     let age = watched.age(now).unwrap_or(f64::INFINITY);
     let text = format!("{age:.2} s");
     let age = if age > STALE {
-        pen.of(Color::Red, text + ", OLD")
+        (text + ", OLD").red()
     } else {
         Span::raw(text)
     };
@@ -106,16 +92,16 @@ fn status_lines(watched: &Watched, now: f64, pen: Pen) -> Vec<Line<'static>> {
     let (there, here) = (counters.damaged_frames, watched.damaged);
     let (samples, notices) = (counters.lost_samples, counters.lost_notices);
     let unusable = counters.unusable_values;
-    let pair = |pair: [(&str, bool); 2]| pair.map(|it| output(it, pen));
-    let relays = pair([("run", it.run), ("no brake", it.no_brake)]);
+    let relays = [output("run", it.run), output("no brake", it.no_brake)];
+    let others = [output("permit", it.permit), output("ready", it.ready)];
     let rates = format!("{rate} of {nominal:.0} samples/s, {frames:.0} frames/s");
     let damaged = format!("{there} frames there, {here} here{restarts}");
     let mut lines = vec![
-        row("phase", [phase(state, pen)]),
-        row("mode", [mode(state, pen)]),
+        row("phase", [phase(state)]),
+        row("mode", [mode(state)]),
         row("outputs", relays),
-        row("", pair([("permit", it.permit), ("ready", it.ready)])),
-        row("faults", [faults(state, pen)]),
+        row("", others),
+        row("faults", [faults(state)]),
         row("rates", [rates]),
         row("data age", [age]),
         row("lost", [format!("{samples} samples, {notices} notices")]),
@@ -148,56 +134,54 @@ fn lifetime(watched: &Watched) -> Vec<Line<'static>> {
     vec![row("lifetime", [landings]), row("", [times])]
 }
 
-fn phase(state: &State, pen: Pen) -> Span<'static> {
+fn phase(state: &State) -> Span<'static> {
     let colour = match state.phase {
         Phase::Starting => Color::Reset,
         Phase::Levitated => Color::Green,
         Phase::FreeFall | Phase::Impact | Phase::Sliding | Phase::Rolling => Color::Red,
     };
-    pen.of(colour, <&str>::from(state.phase).to_owned())
+    <&str>::from(state.phase).fg(colour)
 }
 
-fn mode(state: &State, pen: Pen) -> Span<'static> {
+fn mode(state: &State) -> Span<'static> {
     let colour = match state.mode {
         Mode::SelfTest | Mode::Arming => Color::Yellow,
         Mode::Watching => Color::Green,
         Mode::Dropped | Mode::Faulted => Color::Red,
     };
-    let cause = state
-        .cause
-        .map_or(String::new(), |it| format!(": {}", <&str>::from(it)));
-    pen.of(colour, <&str>::from(state.mode).to_owned() + &cause)
+    let cause = state.cause.map(|it| format!(": {}", <&str>::from(it)));
+    let cause = cause.unwrap_or_default();
+    (<&str>::from(state.mode).to_owned() + &cause).fg(colour)
 }
 
-fn output((name, on): (&str, bool), pen: Pen) -> Span<'static> {
+fn output(name: &str, on: bool) -> Span<'static> {
     if on {
-        pen.of(Color::Green, format!("{name} ON  "))
+        format!("{name} ON  ").green()
     } else {
         Span::raw(format!("{name} off  "))
     }
 }
 
-fn faults(state: &State, pen: Pen) -> Span<'static> {
+fn faults(state: &State) -> Span<'static> {
     let names: Vec<_> = state.faults.iter().map(<&str>::from).collect();
     if names.is_empty() {
         Span::raw("none")
     } else {
-        pen.of(Color::Red, names.join(", "))
+        names.join(", ").red()
     }
 }
 
-fn event_line(event: &DetectedEvent, pen: Pen) -> Line<'static> {
+fn event_line(event: &DetectedEvent) -> Line<'static> {
     let fate = match (event.confirmed_s, event.withdrawn_s, &event.fault) {
         (_, Some(_), _) => " withdrawn".to_owned(),
         (Some(_), None, _) => " confirmed".to_owned(),
         (None, None, Some(fault)) => format!(" {} {}", fault.channel, fault.kind),
         (None, None, None) => String::new(),
     };
-    let speed = event
-        .normal_speed_m_s
-        .map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
+    let speed = event.normal_speed_m_s;
+    let speed = speed.map_or(String::new(), |it| format!(" {:.1}", it * 1e3));
     let time = Span::raw(format!("{:>11.4}  ", event.onset_s));
-    let name = pen.of(Color::Yellow, <&str>::from(event.event).to_owned());
+    let name = <&str>::from(event.event).yellow();
     Line::from(vec![time, name, Span::raw(fate), Span::raw(speed)])
 }
 

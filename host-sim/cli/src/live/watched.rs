@@ -11,7 +11,7 @@ use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::log::header::Header;
 use touchdown_protocol::log::waveform::NO_VALUE;
 
-use super::update::{Said, Update};
+use super::watcher::{Said, Update};
 use touchdown_run::detection;
 use touchdown_run::outcome::DetectedEvent;
 use touchdown_run::timebase::Timebase;
@@ -104,10 +104,8 @@ impl Watched {
     }
 
     fn go_on(&mut self, at: f64, state: &State) {
-        let began_again = self
-            .state
-            .is_some_and(|(_, it)| it.sample != u64::MAX && state.sample < it.sample);
-        if began_again {
+        let before = self.state.map_or(u64::MAX, |(_, it)| it.sample);
+        if before != u64::MAX && state.sample < before {
             // Its clock began again: what was told is of another time.
             self.restarts += 1;
             self.states.clear();

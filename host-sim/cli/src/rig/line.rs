@@ -1,4 +1,5 @@
-//! The rig's line: a socket for one desktop at a time, passed on to the image, with noise.
+//! The rig's line: a socket for one desktop at a time, passed on to the image, with noise: bytes flipped,
+//! lost and invented.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -6,7 +7,8 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::Duration;
 
-use super::noise::Noise;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 /// Between two looks where nothing comes.
 const LOOK: Duration = Duration::from_micros(500);
@@ -51,7 +53,7 @@ impl Line {
     fn turn(&mut self) -> bool {
         match self.orders.try_recv() {
             Ok(LineOrder::Device(stream)) => self.device.connect(stream),
-            Ok(LineOrder::Noise(part)) => self.noise.set(part),
+            Ok(LineOrder::Noise(part)) => self.noise.part = part,
             Err(TryRecvError::Disconnected) => return false,
             Err(TryRecvError::Empty) => {}
         }
@@ -77,10 +79,8 @@ struct End {
 
 impl End {
     fn connect(&mut self, stream: TcpStream) {
-        let ready = stream
-            .set_nonblocking(true)
-            .and_then(|()| stream.set_nodelay(true));
-        self.stream = ready.is_ok().then_some(stream);
+        let is_ready = stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok();
+        self.stream = is_ready.then_some(stream);
         self.waiting.clear();
     }
 
@@ -109,5 +109,51 @@ impl End {
             Err(e) if e.kind() == ErrorKind::WouldBlock => {}
             Err(_) => self.stream = None,
         }
+    }
+}
+
+struct Noise {
+    random: ChaCha8Rng,
+    /// Probability that a byte is spoilt.
+    part: f64,
+}
+
+impl Noise {
+    fn new(part: f64, seed: u64) -> Self {
+        let random = ChaCha8Rng::seed_from_u64(seed);
+        Self { random, part }
+    }
+
+    /// What comes out at the other end.
+    fn inject(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let mut out = Vec::with_capacity(bytes.len());
+        let spoilt = (self.part.clamp(0.0, 1.0) * 2_f64.powi(32)) as u64;
+        for &byte in bytes {
+            let is_spoilt = u64::from(self.random.next_u32()) < spoilt;
+            let random = self.random.next_u32();
+            match random % 3 {
+                _ if !is_spoilt => out.push(byte),
+                0 => out.push(byte ^ 1 << (random >> 8 & 7)),
+                1 => {}
+                _ => out.extend([byte, (random >> 8) as u8]),
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_bytes_are_spoilt_as_was_asked() {
+        let bytes = [0x55; 30_000];
+        assert_eq!(Noise::new(0.0, 1).inject(&bytes), bytes);
+        let spoilt = Noise::new(0.01, 1).inject(&bytes);
+        let changed = spoilt.iter().filter(|it| **it != 0x55).count();
+        // Flipped and invented ones, two thirds of 300: within 4 standard deviations of 14.
+        assert!((144..=256).contains(&changed), "{changed}");
+        assert!(Noise::new(1.0, 1).inject(&bytes) != bytes);
     }
 }

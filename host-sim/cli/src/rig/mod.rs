@@ -3,7 +3,6 @@
 
 mod line;
 mod machine;
-mod noise;
 mod pipe;
 
 use std::io;
@@ -27,8 +26,6 @@ use touchdown_scene::sensors::Failing;
 use self::line::LineOrder;
 use self::machine::Machine;
 use self::pipe::Pipe;
-
-pub use self::noise::Noise;
 
 /// A block that is later than that is not made up for.
 const LATEST: Duration = Duration::from_millis(100);
@@ -83,17 +80,14 @@ impl Rig {
         let (address, line) = line::open(options.port, options.noise, seed).map_err(socket)?;
         let (orders, inbox) = channel();
         let starts = Arc::new(AtomicU32::new(0));
-        let count = Arc::clone(&starts);
-        let worker = thread::spawn(move || {
-            let supply = Supply {
-                emulator,
-                scene: &scene,
-                options: &options,
-                line,
-                starts: &count,
-            };
-            run(&supply, &inbox)
-        });
+        let supply = Supply {
+            emulator,
+            scene,
+            options,
+            line,
+            starts: Arc::clone(&starts),
+        };
+        let worker = thread::spawn(move || run(&supply, &inbox));
         Ok(Self {
             address,
             orders: Some(orders),
@@ -109,9 +103,8 @@ impl Rig {
 
     /// Orders; whether there is still a rig.
     pub fn order(&self, order: Order) -> bool {
-        self.orders
-            .as_ref()
-            .is_some_and(|it| it.send(order).is_ok())
+        let orders = self.orders.as_ref();
+        orders.is_some_and(|it| it.send(order).is_ok())
     }
 
     /// Whether it has stopped by itself, which is a failure.
@@ -139,15 +132,15 @@ impl Drop for Rig {
 }
 
 /// What the controller is switched on with.
-struct Supply<'a> {
+struct Supply {
     emulator: Emulator,
-    scene: &'a Scene,
-    options: &'a Options,
+    scene: Scene,
+    options: Options,
     line: Sender<LineOrder>,
-    starts: &'a AtomicU32,
+    starts: Arc<AtomicU32>,
 }
 
-impl Supply<'_> {
+impl Supply {
     /// Switches the controller on.
     fn on(&self) -> Result<(Session, Pipe), EmulatorError> {
         let folder: &Path = &self.options.folder;
@@ -166,9 +159,9 @@ impl Supply<'_> {
 }
 
 /// Until nobody orders any more.
-fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
+fn run(supply: &Supply, orders: &Receiver<Order>) -> Result<(), Failure> {
     let refused = |e| Failure::Usage(format!("{}: {e}", supply.scene.name));
-    let mut machine = Machine::try_new(supply.scene).map_err(refused)?;
+    let mut machine = Machine::try_new(&supply.scene).map_err(refused)?;
     let (mut session, mut pipe) = supply.on()?;
     let block = Duration::from_secs_f64(BLOCK_SAMPLES as f64 / supply.scene.run.sample_rate);
     let mut due = Instant::now();
@@ -190,9 +183,8 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
         let status = session.ended()?;
         if let Some(status) = status.filter(|it| it.code() != Some(RESTART)) {
             let log = session.cut()?.join("; ");
-            return Err(Failure::Target(format!(
-                "the image ended ({status}): {log}"
-            )));
+            let why = format!("the image ended ({status}): {log}");
+            return Err(Failure::Target(why));
         }
         if cut || status.is_some() {
             // The old one must be gone before the new one uses its files.
@@ -213,8 +205,7 @@ fn run(supply: &Supply<'_>, orders: &Receiver<Order>) -> Result<(), Failure> {
                 ))?;
             }
         }
-        let is_through = pipe.push();
-        if !is_through {
+        if !pipe.push() {
             thread::sleep(Duration::from_micros(500));
         } else if !supply.options.fast {
             due += block;

@@ -15,34 +15,24 @@ const MISSING: u32 = 99_999;
 /// 1 January 1970 at its last reset.
 pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
     let header = episode.scale()?;
-    let fitted: Vec<usize> = (0..CHANNELS)
-        .filter(|it| header.fitted & (1 << it) != 0)
-        .collect();
+    let fitted = (0..CHANNELS).filter(|it| header.fitted & (1 << it) != 0);
+    let fitted: Vec<usize> = fitted.collect();
     let (number, count) = (episode.sequence, fitted.len());
     let mut cfg = format!("{STATION},{DEVICE}{number},1999\r\n{count},{count}A,0D\r\n");
     let record = header.calibration.unwrap_or_default();
-    for (number, &channel) in fitted.iter().enumerate() {
+    for (number, &channel) in (1..).zip(&fitted) {
         let plane = &record.planes[channel / 2];
         let (zero, gain) = (plane.zero[channel % 2], plane.gain[channel % 2]);
         let um = f64::from(header.resolution) * 1e6 / f64::from(gain);
         let zero_um = f64::from(zero) * 1e6 / f64::from(gain);
-        cfg += &format!(
-            "{},{},,,um,{},{},0,0,{},1,1,P\r\n",
-            number + 1,
-            channel_name(channel as u8),
-            um,
-            -um * f64::from(header.zero_count) - zero_um,
-            header.full_scale
-        );
+        let (name, most) = (channel_name(channel as u8), header.full_scale);
+        let shift = -um * f64::from(header.zero_count) - zero_um;
+        cfg += &format!("{number},{name},,,um,{um},{shift},0,0,{most},1,1,P\r\n");
     }
     let rate = f64::from(header.sample_rate) / f64::from(header.decimation);
     let at = |tick: u64| date(tick as f64 / f64::from(header.sample_rate));
-    cfg += &format!(
-        "50\r\n1\r\n{rate},{}\r\n{}\r\n{}\r\nASCII\r\n1\r\n",
-        episode.samples.len(),
-        at(header.first),
-        at(header.trigger)
-    );
+    let (count, first, trigger) = (episode.samples.len(), at(header.first), at(header.trigger));
+    cfg += &format!("50\r\n1\r\n{rate},{count}\r\n{first}\r\n{trigger}\r\nASCII\r\n1\r\n");
     let mut dat = String::new();
     for (number, counts) in episode.samples.iter().enumerate() {
         dat += &format!("{},{:.0}", number + 1, 1e6 * number as f64 / rate);
@@ -59,9 +49,8 @@ pub fn comtrade(episode: &Episode) -> Option<[String; 2]> {
 /// `dd/mm/yyyy,hh:mm:ss.ssssss`, so many seconds after 1970 began.
 fn date(seconds: f64) -> String {
     let date = DateTime::from_timestamp_micros((1e6 * seconds).round() as i64);
-    date.unwrap_or_default()
-        .format("%d/%m/%Y,%H:%M:%S%.6f")
-        .to_string()
+    let date = date.unwrap_or_default();
+    date.format("%d/%m/%Y,%H:%M:%S%.6f").to_string()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
-//! A dump of the flash, or a file of one episode.
+//! A log: a dump of the flash, a file of one episode, or what is fetched from the controller over the link.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use embedded_storage::nor_flash::ReadNorFlash;
@@ -10,11 +11,15 @@ use touchdown_protocol::log::block::{BLOCK_BYTES, Page};
 use touchdown_protocol::log::counters::Counters;
 
 use super::episode::{Completeness, Episode};
+use crate::link::{Client, LinkError, Port};
 use crate::ram_nor::RamNor;
 use touchdown_base::input_error::InputError;
+use touchdown_base::progress::Progress;
 
 /// Larger than any flash that the log is kept on, bytes.
 const LARGEST: u64 = 256 << 20;
+/// Episodes in it.
+const MOST: u32 = 5_461;
 
 /// All that a log holds.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +40,36 @@ pub fn read(path: &str) -> Result<Dump, InputError> {
     Ok(dump)
 }
 
+/// Numbers of episodes.
+pub type EpisodeRange = RangeInclusive<u32>;
+
+/// Fetches those of all episodes that are wanted and there, of which one takes 5 s at 115 200 baud, and the lifetime
+/// counters.
+pub fn fetch(
+    port: &Port,
+    wanted: impl FnOnce(EpisodeRange) -> EpisodeRange,
+) -> Result<Dump, LinkError> {
+    let mut client = Client::new(port.open()?);
+    client.hello()?;
+    let counters = client.lifetime()?;
+    let mut episodes = Vec::new();
+    let Some((first, last)) = client.episodes()? else {
+        return Ok(Dump { counters, episodes });
+    };
+    // Some between may be gone; what is beyond the largest flash is never there.
+    for number in wanted(first.max(last.saturating_sub(MOST - 1))..=last) {
+        let mut progress = None;
+        let bytes = client.episode(number, |done, total| {
+            progress
+                .get_or_insert_with(|| Progress::of_jobs("fetching", total.into()))
+                .at(done.into());
+        })?;
+        let episode = bytes.map(|bytes| Episode::of(&bytes));
+        episodes.extend(episode.filter(|it| it.report.sequence.is_some()));
+    }
+    Ok(Dump { counters, episodes })
+}
+
 impl Dump {
     /// From the bytes of a file.
     pub fn of(bytes: &[u8]) -> Self {
@@ -50,9 +85,8 @@ impl Dump {
         let slots = (bytes.len() - bytes_of(0)).div_ceil(bytes_of(1) - bytes_of(0));
         let mut flash = flash(bytes, slots);
         let counters = newest(&mut flash);
-        let mut episodes: Vec<Episode> = (0..slots)
-            .filter_map(|slot| held(&mut flash, slot))
-            .collect();
+        let episodes = (0..slots).filter_map(|slot| held(&mut flash, slot));
+        let mut episodes: Vec<_> = episodes.collect();
         episodes.sort_by_key(|it| it.sequence);
         mark_twins(&mut episodes);
         for it in &mut episodes {
@@ -100,8 +134,7 @@ fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
     episode.slot = Some(number);
     episode.locked = slot.locked;
     if slot.sequence != episode.sequence {
-        let flaw = "its first pages are lost, so the controller does not know it";
-        episode.flaw(flaw.to_owned());
+        episode.flaw("its first pages are lost, so the controller does not know it".to_owned());
     }
     Some(episode)
 }

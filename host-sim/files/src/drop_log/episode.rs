@@ -136,9 +136,9 @@ impl Episode {
         if let Some(header) = episode.header {
             let known = episode.pulses.iter().flatten().count();
             episode.samples_with_pulses = (header.pulsed != 0).then_some(known);
-            impossible(&header)
-                .into_iter()
-                .for_each(|it| episode.flaw(it));
+            for flaw in impossible(&header) {
+                episode.flaw(flaw);
+            }
             records.iter().for_each(|it| episode.tell(it, &header));
         }
         episode
@@ -206,14 +206,12 @@ impl Episode {
             let place = |count| (f64::from(count) - zero) * resolution;
             return std::array::from_fn(|channel| count(channel).map_or(f64::NAN, place));
         }
-        let mut places = [f64::NAN; CHANNELS];
-        if let Ok(sensing) = Sensing::try_new(&header.sensing()) {
-            let counts = std::array::from_fn(|channel| count(channel).map(f32::from));
-            for (to, place) in places.chunks_exact_mut(2).zip(sensing.place(counts)) {
-                to.copy_from_slice(&place.map_or([f64::NAN; 2], |it| it.map(f64::from)));
-            }
-        }
-        places
+        let Ok(sensing) = Sensing::try_new(&header.sensing()) else {
+            return [f64::NAN; CHANNELS];
+        };
+        let places = sensing.place([0, 1, 2, 3].map(|channel| count(channel).map(f32::from)));
+        let [[ax, ay], [bx, by]] = places.map(|it| it.unwrap_or([f32::NAN; 2]));
+        [ax, ay, bx, by].map(f64::from)
     }
 }
 
@@ -244,10 +242,10 @@ fn learnt(parts: &[&[u8]]) -> Option<String> {
 
 /// What a header of no recorder says.
 fn impossible(header: &Header) -> Vec<String> {
-    let positive = |value: f32| value.is_finite() && value > 0.0;
-    let day = header.calibration.map_or(0, |it| it.date);
-    let is_sensed = header.is_plain() || Sensing::try_new(&header.sensing()).is_ok();
     let it = header;
+    let positive = |value: f32| value.is_finite() && value > 0.0;
+    let day = it.calibration.map_or(0, |it| it.date);
+    let is_sensed = it.is_plain() || Sensing::try_new(&it.sensing()).is_ok();
     let rules: [(bool, &str, &dyn Display); 9] = [
         (positive(it.sample_rate), "sample_rate", &it.sample_rate),
         (positive(it.resolution), "resolution", &it.resolution),
@@ -260,7 +258,7 @@ fn impossible(header: &Header) -> Vec<String> {
         (is_sensed, "calibration or mounting, of the day", &day),
     ];
     let broken = rules.iter().filter(|(holds, ..)| !holds);
-    broken
-        .map(|(_, name, value)| format!("the header's {name} is {value}, which no recorder writes"))
-        .collect()
+    let rule = "which no recorder writes";
+    let flaws = broken.map(|(_, name, value)| format!("the header's {name} is {value}, {rule}"));
+    flaws.collect()
 }

@@ -4,13 +4,11 @@
 mod comtrade;
 mod dump;
 mod episode;
-mod fetch;
 mod text;
 
 pub use comtrade::comtrade;
-pub use dump::{Dump, read};
+pub use dump::{Dump, EpisodeRange, fetch, read};
 pub use episode::{ChannelFault, Completeness, Episode, Event};
-pub use fetch::{EpisodeRange, fetch};
 pub use text::{list, show};
 
 use std::io::Write;

@@ -21,14 +21,11 @@ pub fn list(dump: &Dump, paint: Paint) -> String {
     }
     match &dump.counters {
         Some(it) => {
+            let (boots, landings, cut_off) = (it.boots, it.landings, it.unweighed);
+            let (weight, lost, touches) = (it.weight as f64 / 1e3, it.lost, it.touches);
             text += &format!(
-                "switched on {} times; {} landings, {} of them cut off, weight {:.3}; {} drops not recorded; {} touches\n",
-                it.boots,
-                it.landings,
-                it.unweighed,
-                it.weight as f64 / 1e3,
-                it.lost,
-                it.touches
+                "switched on {boots} times; {landings} landings, {cut_off} of them cut off, weight {weight:.3}; \
+                 {lost} drops not recorded; {touches} touches\n"
             );
             if let Some(cause) = it.uncleared {
                 text += &format!("a drop is not cleared: {}\n", <&str>::from(cause));
@@ -70,13 +67,15 @@ fn damage(episode: &Episode) -> String {
     }
     let mut parts = Vec::new();
     for kind in DamageKind::VARIANTS {
-        let (name, all) = (<&str>::from(kind), episode.damage.iter());
-        let pages = all.filter(|it| it.what == *kind);
+        let pages = episode.damage.iter().filter(|it| it.what == *kind);
         let pages: Vec<_> = pages.map(|it| it.page.to_string()).collect();
-        if !pages.is_empty() {
-            let word = if pages.len() == 1 { "page" } else { "pages" };
-            parts.push(format!("{word} {} {name}", pages.join(", ")));
-        }
+        let word = match pages.len() {
+            0 => continue,
+            1 => "page",
+            _ => "pages",
+        };
+        let name = <&str>::from(kind);
+        parts.push(format!("{word} {} {name}", pages.join(", ")));
     }
     parts.extend(episode.flaws.iter().cloned());
     let rest = episode.report.rest;
@@ -132,24 +131,20 @@ pub fn show(episode: &Episode, paint: Paint) -> String {
         };
         let fault = event.fault;
         let fault = fault.map_or(String::new(), |it| format!("  {} {}", it.channel, it.kind));
-        text += &format!(
-            "{:<16}{:>12.4}{:>14.4}{speed:>10}{fault}\n",
-            <&str>::from(event.event),
-            event.onset_s * 1e3,
-            event.declared_s * 1e3,
-        );
+        let (onset, declared) = (event.onset_s * 1e3, event.declared_s * 1e3);
+        let name = <&str>::from(event.event);
+        text += &format!("{name:<16}{onset:>12.4}{declared:>14.4}{speed:>10}{fault}\n");
     }
     if !episode.outputs.is_empty() {
         text += &table(&episode.outputs, paint);
     }
     for it in &episode.alarms {
-        let level = <&str>::from(it.level);
-        text += &format!(
-            "alarm: {level}, plane {} at {:.2} of the clearance, at {:.4} ms\n",
-            it.plane,
-            it.fraction,
+        let (level, plane, fraction) = (<&str>::from(it.level), it.plane, it.fraction);
+        let at = format!(
+            "at {fraction:.2} of the clearance, at {:.4} ms",
             it.time_s * 1e3
         );
+        text += &format!("alarm: {level}, plane {plane} {at}\n");
     }
     for it in &episode.orders {
         text += &format!("order: {it}\n");
@@ -168,6 +163,5 @@ fn ended(ending: &Ending) -> String {
         Some(cause) => format!("outputs off: {}", <&str>::from(cause)),
         None => "nothing latched".to_owned(),
     };
-    let index = ending.index;
-    format!("ended: {why}; velocity index {index:.2}; {off}\n")
+    format!("ended: {why}; velocity index {:.2}; {off}\n", ending.index)
 }

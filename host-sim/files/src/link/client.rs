@@ -12,7 +12,7 @@ use touchdown_protocol::log::counters::Counters;
 use touchdown_protocol::wire::{Record, decode_record};
 
 use super::error::LinkError;
-use super::line::Line;
+use super::port::Line;
 
 /// Without an answer for so long, ms, the request is sent again: soon where one was damaged, ever less often where the
 /// controller is slow. 4.4 s in all: a sector that is being erased takes 0.4 s, an emulator on a busy machine more.

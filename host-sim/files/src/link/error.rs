@@ -49,11 +49,10 @@ impl LinkError {
 }
 
 fn of_line(error: &io::Error) -> String {
+    use ErrorKind::{BrokenPipe, ConnectionRefused, ConnectionReset, UnexpectedEof};
     match error.kind() {
-        ErrorKind::ConnectionRefused => "nobody is there".to_owned(),
-        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe | ErrorKind::UnexpectedEof => {
-            "the line was closed".to_owned()
-        }
+        ConnectionRefused => "nobody is there".to_owned(),
+        ConnectionReset | BrokenPipe | UnexpectedEof => "the line was closed".to_owned(),
         _ => reason(error),
     }
 }

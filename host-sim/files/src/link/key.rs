@@ -8,9 +8,9 @@ use touchdown_protocol::config_block::{KEY_BYTES, Key};
 
 /// The key of `text`, or the rule that it breaks.
 pub fn parse(text: &str) -> Result<Key, &'static str> {
-    let is_hex = text.len() == 2 * KEY_BYTES && text.bytes().all(|it| it.is_ascii_hexdigit());
-    match u128::from_str_radix(text, 16) {
-        Ok(number @ 1..) if is_hex => Ok(Key(number.to_be_bytes())),
+    let mut bytes = [0; KEY_BYTES];
+    match hex::decode_to_slice(text, &mut bytes) {
+        Ok(()) if bytes != [0; KEY_BYTES] => Ok(Key(bytes)),
         _ => Err("the key must be 32 hexadecimal digits, not all of them 0"),
     }
 }

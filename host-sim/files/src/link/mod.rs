@@ -3,8 +3,7 @@
 //!
 //! | file | says |
 //! |---|---|
-//! | `port` | what a person types, to a line |
-//! | `line` | bytes to and from a serial device or a socket |
+//! | `port` | what a person types, to a line: a serial device or a socket |
 //! | `client` | requests, retries, answers |
 //! | `key` | the key of the right to order, from its file |
 //! | `error` | why there is no answer |
@@ -12,12 +11,10 @@
 mod client;
 mod error;
 mod key;
-mod line;
 mod port;
 
 pub use client::{Client, Told};
 pub use error::{LinkError, refused_why, why};
 pub use key::load as load_key;
 pub(crate) use key::parse as parse_key;
-pub use line::Line;
-pub use port::Port;
+pub use port::{Line, Port};

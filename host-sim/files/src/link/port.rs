@@ -1,13 +1,12 @@
-//! What a person types for a port.
+//! What a person types for a port, and the line that it opens: bytes to and from the controller.
 
 use std::fmt;
-use std::io;
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::path::Path;
 use std::time::Duration;
 
 use super::error::LinkError;
-use super::line::Line;
 
 /// Speed of a serial device; sockets have none.
 const BAUD: u32 = 115_200;
@@ -16,6 +15,9 @@ const LIMIT: Duration = Duration::from_secs(2);
 
 const TCP: &str = "tcp:";
 const UNIX: &str = "unix:";
+
+/// A limit of zero would wait for ever.
+const SHORTEST: Duration = Duration::from_millis(1);
 
 /// Where a controller is: a serial device, `tcp:HOST:PORT` or `unix:PATH`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,18 +38,17 @@ impl Port {
     /// Opens it.
     pub fn open(&self) -> Result<Box<dyn Line>, LinkError> {
         if let Some(address) = self.0.strip_prefix(TCP) {
-            let mut failure = io::Error::other("no such host");
+            let mut connected = Err(io::Error::other("no such host"));
             for address in address.to_socket_addrs()? {
-                match TcpStream::connect_timeout(&address, LIMIT) {
-                    Ok(stream) => {
-                        stream.set_nodelay(true)?;
-                        stream.set_write_timeout(Some(LIMIT))?;
-                        return Ok(Box::new(stream));
-                    }
-                    Err(error) => failure = error,
+                connected = TcpStream::connect_timeout(&address, LIMIT);
+                if connected.is_ok() {
+                    break;
                 }
             }
-            return Err(failure.into());
+            let stream = connected?;
+            stream.set_nodelay(true)?;
+            stream.set_write_timeout(Some(LIMIT))?;
+            return Ok(Box::new(stream));
         }
         if let Some(path) = self.0.strip_prefix(UNIX) {
             return unix(path);
@@ -79,6 +80,47 @@ fn is_device(name: &str) -> bool {
 impl fmt::Display for Port {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
+    }
+}
+
+/// A line that is open. It ends with an error.
+pub trait Line: Send {
+    /// How many bytes have come, after at most `limit`: 0 where none have.
+    fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize>;
+
+    /// Sends all of `bytes`.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
+}
+
+macro_rules! line {
+    ($line:ty, $set_limit:ident) => {
+        impl Line for $line {
+            fn read(&mut self, bytes: &mut [u8], limit: Duration) -> io::Result<usize> {
+                self.$set_limit(limit.max(SHORTEST).into())?;
+                come(Read::read(self, bytes))
+            }
+
+            fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+                self.write_all(bytes)
+            }
+        }
+    };
+}
+
+line!(TcpStream, set_read_timeout);
+#[cfg(unix)]
+line!(std::os::unix::net::UnixStream, set_read_timeout);
+line!(Box<dyn serialport::SerialPort>, set_timeout);
+
+/// Nothing in time is no error; an end is one.
+fn come(read: io::Result<usize>) -> io::Result<usize> {
+    match read {
+        Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+        Err(error) => match error.kind() {
+            ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(0),
+            _ => Err(error),
+        },
+        come => come,
     }
 }
 

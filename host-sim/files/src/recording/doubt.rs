@@ -31,7 +31,6 @@ const NEAR: f64 = 0.1;
 /// Largest values so far.
 #[derive(Clone, Debug, Default)]
 pub struct Doubt {
-    file: String,
     clearance: f64,
     spin: f64,
     /// Of the sensors, m.
@@ -46,10 +45,9 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    /// Before the first row of `file`.
-    pub fn new(file: &str, scene: &Scene) -> Self {
+    /// Before the first row.
+    pub fn new(scene: &Scene) -> Self {
         Self {
-            file: file.to_owned(),
             clearance: scene.retainer.clearance,
             spin: scene.rotor.spin,
             range: scene.sensors.range,
@@ -84,33 +82,29 @@ impl Doubt {
         let mut warnings = Vec::new();
         let ratio = self.farthest / self.clearance;
         if self.samples > 0 && !self.seen {
-            let rule = "not one sample has a position: are these the right columns?";
-            warnings.push(rule.to_owned());
+            warnings.push("not one sample has a position: are these the right columns?".to_owned());
         } else if self.samples > 0 && !(NEAREST..=FARTHEST).contains(&ratio) {
             let would = |it: &&(&str, f64)| (0.2..=1.5).contains(&(ratio / it.1));
             let units = UNITS.iter().find(would);
             let units = units.map_or(String::new(), |(name, _)| format!(" ({name}?)"));
+            let (most, clearance) = (Number(self.farthest * 1e6), self.clearance * 1e6);
             warnings.push(format!(
-                "the rotor is at most {:.4} um from the centre, {ratio:.3e} of the clearance of {} um: are unit \
-                 and offset right?{units}",
-                Number(self.farthest * 1e6),
-                self.clearance * 1e6
+                "the rotor is at most {most:.4} um from the centre, {ratio:.3e} of the clearance of {clearance} um: \
+                 are unit and offset right?{units}"
             ));
         }
-        if self.saturated as f64 > SATURATED * self.samples as f64 {
-            warnings.push(format!(
-                "{} of {} samples are beyond the sensors' range of {} um and are cut off there",
-                self.saturated,
-                self.samples,
-                self.range * 1e6
-            ));
+        let (saturated, samples) = (self.saturated, self.samples);
+        if saturated as f64 > SATURATED * samples as f64 {
+            let range = format!("beyond the sensors' range of {} um", self.range * 1e6);
+            let rule =
+                format!("{saturated} of {samples} samples are {range} and are cut off there");
+            warnings.push(rule);
         }
         if self.fastest * self.spin < 0.0 {
             let rpm = |spin: f64| spin * 60.0 / std::f64::consts::TAU;
+            let (found, told) = (Number(rpm(self.fastest)), rpm(self.spin));
             warnings.push(format!(
-                "the speed is {:.6} rpm, that of the scene {:.6} rpm: is its sign right?",
-                Number(rpm(self.fastest)),
-                rpm(self.spin)
+                "the speed is {found:.6} rpm, that of the scene {told:.6} rpm: is its sign right?"
             ));
         }
         let ratio = (self.fastest / self.spin).abs();
@@ -123,7 +117,6 @@ impl Doubt {
                 "it has plane a alone, the scene two planes: falls and impacts are found later";
             warnings.push(rule.to_owned());
         }
-        let of_file = |it| format!("{}: {it}", self.file);
-        warnings.into_iter().map(of_file).collect()
+        warnings
     }
 }

@@ -13,9 +13,7 @@ const LOOKED_AT: usize = 64;
 /// How a text is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Between fields.
     pub delimiter: Delimiter,
-    /// Between whole and fraction.
     pub decimal: Decimal,
     /// What a line that is none of the table begins with.
     pub comment: Option<Comment>,
@@ -49,20 +47,16 @@ impl Layout {
                         Parquet has to be converted to CSV: docs/use/recordings.md)";
             return Err((line, rule.to_owned()));
         }
-        let bom = if head.starts_with(b"\xef\xbb\xbf") {
-            3
-        } else {
-            0
-        };
-        let mut lines = lines(head, bom);
+        let has_mark = head.starts_with(b"\xef\xbb\xbf");
+        let mut lines = lines(head, if has_mark { 3 } else { 0 });
         if !whole {
             lines.pop();
         }
         let comment = hints.comment.or_else(|| comment_of(&lines));
         let is_comment = |line: &&Line| comment.is_some_and(|it| line.begins_with(it));
-        let table: Vec<&Line> = (lines.iter())
-            .filter(|it| !it.text.trim().is_empty() && !is_comment(it))
-            .collect();
+        let is_blank = |it: &Line| it.text.trim().is_empty();
+        let table = lines.iter().filter(|it| !is_blank(it) && !is_comment(it));
+        let table: Vec<&Line> = table.collect();
         let tail = &table[table.len().saturating_sub(LOOKED_AT)..];
         let Some((delimiter, decimal)) = marks(tail, hints) else {
             let rule = "there are no rows of two numbers or more with commas, semicolons or tabs between them";
@@ -75,9 +69,8 @@ impl Layout {
             let fields = usual.iter().map(|row| &row[column]);
             fields.filter(|it| is_value(it, decimal)).count()
         };
-        let numeric: Vec<bool> = (0..width)
-            .map(|column| 2 * numbers(column) > usual.len())
-            .collect();
+        let numeric = (0..width).map(|column| 2 * numbers(column) > usual.len());
+        let numeric: Vec<bool> = numeric.collect();
         let is_row = |line: &&Line| {
             let fields = fields(line);
             let numbers = fields.iter().filter(|it| is_number(it, decimal));
@@ -92,38 +85,33 @@ impl Layout {
             return Err((table.first().map_or(1, |it| it.at.1), rule));
         };
         let at = table[first].at;
-        let mut above: Vec<Vec<String>> = (table[..first].iter().rev())
-            .take_while(|it| it.at.1 >= after)
-            .map(fields)
-            .take_while(|it| it.len() == width)
-            .take(2)
-            .collect();
+        let above = table[..first].iter().rev();
+        let above = above.take_while(|it| it.at.1 >= after).map(fields);
+        let above = above.take_while(|it| it.len() == width).take(2);
+        let mut above: Vec<Vec<String>> = above.collect();
         if above.is_empty() {
             // NumPy and gnuplot put the names into a comment.
             let mut before = lines.iter().rev().filter(|it| it.at.1 < at.1);
-            let names = before.find(is_comment);
-            let names = names.map(|it| it.text.trim_start().trim_start_matches(['#', '%']));
-            let names = names.map(|it| split(it.trim_start(), delimiter));
+            let names = before.find(is_comment).map(|it| {
+                let names = it.text.trim_start().trim_start_matches(['#', '%']);
+                split(names.trim_start(), delimiter)
+            });
             above.extend(names.filter(|it| it.len() == width));
         }
         let has_units = above.len() == 2 && above[0].iter().any(|it| is_unit(it));
-        let mut above = above.into_iter();
-        let units = if has_units { above.next() } else { None };
-        let names = above.next().unwrap_or_else(|| vec![String::new(); width]);
-        let unit = |index: usize| {
-            let unit = units.as_ref()?.get(index)?;
-            (!unit.is_empty()).then(|| unit.clone())
-        };
+        let none = vec![String::new(); width];
+        let units = has_units.then(|| above.remove(0));
+        let names = above.into_iter().next().unwrap_or_else(|| none.clone());
+        let columns = names.into_iter().zip(units.unwrap_or(none));
+        let columns = columns.map(|(text, unit)| Heading {
+            text,
+            unit: Some(unit).filter(|it| !it.is_empty()),
+        });
         Ok(Self {
             delimiter,
             decimal,
             comment,
-            columns: (names.into_iter().enumerate())
-                .map(|(index, text)| Heading {
-                    text,
-                    unit: unit(index),
-                })
-                .collect(),
+            columns: columns.collect(),
             before: (at.0, at.1 - 1),
         })
     }
@@ -137,18 +125,17 @@ impl Line {
 
 /// Each line with its place; a last one without an end is one too.
 fn lines(head: &[u8], from: usize) -> Vec<Line> {
-    let (mut lines, mut start, mut number) = (Vec::new(), from, 1);
+    let (mut lines, mut start) = (Vec::new(), from);
     while start < head.len() {
         let rest = &head[start..];
         let length = rest.iter().position(|it| *it == b'\n' || *it == b'\r');
         let length = length.unwrap_or(rest.len());
         lines.push(Line {
             text: text_of(&rest[..length]),
-            at: (start, number),
+            at: (start, lines.len() as u64 + 1),
         });
         let ends_in_both = rest[length..].starts_with(b"\r\n");
         start += length + if ends_in_both { 2 } else { 1 };
-        number += 1;
     }
     lines
 }

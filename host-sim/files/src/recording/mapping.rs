@@ -1,11 +1,13 @@
 //! Which column of a recording is what: the file of `--columns`.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::unit::{Displacement, Sensitivity, Speed, Time};
+use crate::stream::is_rate;
 use touchdown_base::input_error::{InputError, LARGEST_TOML};
 use touchdown_scene::file::tables;
 
@@ -53,9 +55,7 @@ pub enum Axes {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextHints {
-    /// Between fields.
     pub delimiter: Option<Delimiter>,
-    /// Between whole and fraction.
     pub decimal: Option<Decimal>,
     /// What a line that is none of the table begins with.
     pub comment: Option<Comment>,
@@ -67,15 +67,12 @@ pub struct TextHints {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, strum::Display)]
 #[repr(u8)]
 pub enum Delimiter {
-    /// `,`
     #[serde(rename = ",", alias = "comma")]
     #[strum(serialize = "commas")]
     Comma = b',',
-    /// `;`
     #[serde(rename = ";", alias = "semicolon")]
     #[strum(serialize = "semicolons")]
     Semicolon = b';',
-    /// A tabulator.
     #[serde(rename = "\t", alias = "tab")]
     #[strum(serialize = "tabs")]
     Tab = b'\t',
@@ -84,10 +81,8 @@ pub enum Delimiter {
 /// Between whole and fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Decimal {
-    /// `.`
     #[serde(rename = ".", alias = "point")]
     Point,
-    /// `,`
     #[serde(rename = ",", alias = "comma")]
     Comma,
 }
@@ -96,10 +91,8 @@ pub enum Decimal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[repr(u8)]
 pub enum Comment {
-    /// `#`
     #[serde(rename = "#")]
     Hash = b'#',
-    /// `%`
     #[serde(rename = "%")]
     Percent = b'%',
 }
@@ -172,19 +165,17 @@ fn half() -> f64 {
 impl Mapping {
     /// Reads the mapping at `path`.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        Self::parse(
-            &path.display().to_string(),
-            &InputError::read(path, LARGEST_TOML)?,
-        )
+        let text = InputError::read(path, LARGEST_TOML)?;
+        Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads the mapping `text`; errors name it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
         let mapping: Self = tables(name, text)?;
-        mapping
-            .check()
-            .map_err(|(span, rule)| InputError::at_span(name, text, span, rule))?;
-        Ok(mapping)
+        match mapping.check() {
+            Ok(()) => Ok(mapping),
+            Err((span, rule)) => Err(InputError::at_span(name, text, span, rule)),
+        }
     }
 
     /// The displacements, in the order of the channels.
@@ -192,19 +183,16 @@ impl Mapping {
         [&self.ax, &self.ay, &self.bx, &self.by].map(|it| it.as_ref().map(Spanned::get_ref))
     }
 
-    fn check(&self) -> Result<(), (std::ops::Range<usize>, String)> {
+    fn check(&self) -> Result<(), (Range<usize>, &'static str)> {
         if self.ax.is_none() || self.ay.is_none() {
             let rule = "[ax] and [ay] say which columns are the displacements of plane a";
-            return Err((0..0, rule.to_owned()));
+            return Err((0..0, rule));
         }
         if let (Some(one), None) | (None, Some(one)) = (&self.bx, &self.by) {
-            let rule = "plane b needs both [bx] and [by]";
-            return Err((one.span(), rule.to_owned()));
+            return Err((one.span(), "plane b needs both [bx] and [by]"));
         }
-        for column in [&self.ax, &self.ay, &self.bx, &self.by]
-            .into_iter()
-            .flatten()
-        {
+        let columns = [&self.ax, &self.ay, &self.bx, &self.by];
+        for column in columns.into_iter().flatten() {
             let it = column.get_ref();
             let rule = match (it.unit, it.sensitivity) {
                 _ if !it.offset.is_finite() => "offset must be a finite number",
@@ -216,19 +204,17 @@ impl Mapping {
                 }
                 _ => continue,
             };
-            return Err((column.span(), rule.to_owned()));
+            return Err((column.span(), rule));
         }
         if let Some(time) = &self.time {
             let it = time.get_ref();
             let rule = match (&it.column, it.rate_hz) {
                 (Some(_), Some(_)) => "a column or a rate_hz, not both",
-                (None, Some(rate)) if !crate::stream::is_rate(rate) => {
-                    "rate_hz must be 100 to 200000"
-                }
+                (None, Some(rate)) if !is_rate(rate) => "rate_hz must be 100 to 200000",
                 (None, Some(_)) if it.unit.is_some() => "a unit is for a column",
                 _ => return Ok(()),
             };
-            return Err((time.span(), rule.to_owned()));
+            return Err((time.span(), rule));
         }
         Ok(())
     }

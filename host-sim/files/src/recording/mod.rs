@@ -5,7 +5,6 @@ mod doubt;
 mod layout;
 mod mapping;
 mod pick;
-mod remarks;
 mod resample;
 mod text;
 mod unit;
@@ -14,21 +13,21 @@ use std::io::{BufReader, Read};
 use std::iter;
 use std::path::Path;
 
-pub use comtrade::{DEVICE, STATION};
+pub use comtrade::{DEVICE, STATION, is_pair};
 pub use mapping::Mapping;
 
-use comtrade::{ComtradeRows, Dat, combined, is_combined, is_pair};
+use comtrade::{ComtradeRows, Dat, combined, is_combined};
 use doubt::Doubt;
 use layout::Layout;
-use remarks::Remarks;
 use resample::Resampled;
 use text::{Head, TextRows};
 
 use touchdown_core::learnt::Learnt;
 
-use crate::stream::{Columns, Even, Meter, Records, Row, Stamped, is_rate, of_own_axes};
-use touchdown_base::input_error::{InputError, UTF_16};
-use touchdown_base::plain::Number;
+use crate::stream::{
+    Account, Columns, Even, Records, Row, Stamped, is_rate, not_a_rate, of_own_axes,
+};
+use touchdown_base::input_error::InputError;
 use touchdown_scene::Scene;
 
 /// How a recording is to be read.
@@ -59,22 +58,25 @@ pub struct Recording {
     /// Bytes of the file.
     pub size: u64,
     rows: Rows,
-    meter: Meter,
-    remarks: Remarks,
+    account: Account,
     doubt: Doubt,
 }
 
 impl Recording {
     /// Opens the recording at `path`; `scene` has the sensors and what can be expected.
     pub fn open(path: &Path, reading: &Reading, scene: &Scene) -> Result<Self, InputError> {
-        let file = path.display().to_string();
+        let account = Account::of(path.display().to_string());
         if !is_pair(path) {
             let (bytes, size) = InputError::open(path)?;
-            return Self::of_bytes(&file, bytes, size, reading, scene);
+            return Self::of_bytes(&account.file, bytes, size, reading, scene);
         }
-        let mut source = Source::new(&file, 0, reading, scene);
-        let (dat, size) = comtrade::open(path, &source.meter)?;
-        source.size = size;
+        let (dat, size) = comtrade::open(path, &account)?;
+        let source = Source {
+            account,
+            size,
+            reading,
+            scene,
+        };
         source.comtrade(dat)
     }
 
@@ -86,15 +88,17 @@ impl Recording {
         reading: &Reading,
         scene: &Scene,
     ) -> Result<Self, InputError> {
-        let source = Source::new(file, size, reading, scene);
+        let source = Source {
+            account: Account::of(file),
+            size,
+            reading,
+            scene,
+        };
         if is_combined(Path::new(file)) {
-            let dat = combined(file, Box::new(BufReader::new(bytes)), &source.meter)?;
+            let dat = combined(Box::new(BufReader::new(bytes)), &source.account)?;
             return source.comtrade(dat);
         }
-        let head = Head::read(file, bytes)?;
-        if head.is_utf_16() {
-            return Err(InputError::at_line(file, 1, UTF_16));
-        }
+        let head = Head::read(bytes, &source.account)?;
         match &reading.mapping {
             Some(mapping) => source.mapped(head, mapping),
             None => source.stream(head),
@@ -103,13 +107,14 @@ impl Recording {
 
     /// Bytes read so far.
     pub fn bytes_read(&self) -> u64 {
-        self.meter.bytes()
+        self.account.bytes()
     }
 
     /// What is worth a warning so far; after the last row, also what makes one doubt.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.remarks.take();
-        warnings.extend(self.doubt.warnings());
+        let mut warnings = self.account.take_warnings();
+        let doubts = self.doubt.warnings().into_iter();
+        warnings.extend(doubts.map(|it| format!("{}: {it}", self.account.file)));
         warnings
     }
 }
@@ -130,33 +135,19 @@ impl Iterator for Recording {
 
 /// What a recording of any kind is read with.
 struct Source<'a> {
-    file: &'a str,
+    account: Account,
     size: u64,
     reading: &'a Reading,
     scene: &'a Scene,
-    meter: Meter,
-    remarks: Remarks,
 }
 
-impl<'a> Source<'a> {
-    fn new(file: &'a str, size: u64, reading: &'a Reading, scene: &'a Scene) -> Self {
-        Self {
-            file,
-            size,
-            reading,
-            scene,
-            meter: Meter::default(),
-            remarks: Remarks::default(),
-        }
-    }
-
+impl Source<'_> {
     fn mapped(
         self,
         head: Head<impl Read + 'static>,
         mapping: &Mapping,
     ) -> Result<Recording, InputError> {
-        let (sensors, remarks) = (&self.scene.sensors, &self.remarks);
-        let mut rows = TextRows::new(self.file, head, mapping, sensors, remarks, &self.meter)?;
+        let mut rows = TextRows::new(head, mapping, &self.scene.sensors, &self.account)?;
         let (header, format) = (rows.layout.before.1.max(1), format_of(&rows.layout));
         let (columns, rate) = (rows.pick.columns(), rows.rate);
         let rows = iter::from_fn(move || rows.read().transpose());
@@ -168,41 +159,28 @@ impl<'a> Source<'a> {
 
     fn stream(self, head: Head<impl Read + 'static>) -> Result<Recording, InputError> {
         let found = head.layout(&Default::default());
-        let records = Records::new(self.file, head.whole(0), &self.meter);
+        let records = Records::new(head.whole(0), &self.account);
         let records = records.map_err(|error| match &found {
-            Ok(layout) => error.and(format!(
-                "; --columns FILE.toml says which column is what; {}",
-                pick::list(&layout.columns)
-            )),
+            Ok(layout) => {
+                let rule = "; --columns FILE.toml says which column is what; ".to_owned();
+                error.and(rule + &pick::list(&layout.columns))
+            }
             Err(_) => error,
         })?;
-        let (columns, learnt) = (records.columns, records.learnt.clone());
-        let is_resampled = self.reading.resample.is_some();
-        let recording = self.paced(columns, records, None, 1)?;
-        // Another rate would make something else of it.
-        let learnt = learnt.take().filter(|_| !is_resampled);
-        Ok(Recording {
-            is_episode: learnt.is_some(),
-            learnt,
-            ..recording
-        })
+        self.paced(records.columns, records, None, 1)
     }
 
-    fn comtrade(self, dat: Dat<Box<dyn Read>>) -> Result<Recording, InputError> {
+    fn comtrade(self, dat: Dat) -> Result<Recording, InputError> {
         let (mapping, sensors) = (self.reading.mapping.as_ref(), self.scene.sensors);
-        let mut rows = ComtradeRows::new(dat, mapping, &sensors, &self.remarks)?;
+        let mut rows = ComtradeRows::new(dat, mapping, &sensors)?;
         let cfg = &rows.dat.cfg;
         if let (false, None, None) = (cfg.rates.is_empty(), cfg.rate(), self.reading.resample) {
-            let rates: Vec<_> = cfg
-                .rates
-                .iter()
-                .map(|(rate, last)| format!("{rate} Hz up to sample {last}"))
-                .collect();
-            let rule = format!(
-                "the sample rate changes: {}; --resample RATE makes one of them and says so",
-                rates.join(", ")
-            );
-            return Err(InputError::of_file(&rows.dat.file, rule));
+            let rates = cfg.rates.iter();
+            let rates = rates.map(|(rate, last)| format!("{rate} Hz up to sample {last}"));
+            let rates = rates.collect::<Vec<_>>().join(", ");
+            let rule = "--resample RATE makes one of them and says so";
+            let rule = format!("the sample rate changes: {rates}; {rule}");
+            return Err(rows.dat.account.of_file(rule));
         }
         let is_episode = cfg.is_episode && mapping.is_none();
         let format = format!("COMTRADE {}, {} data", cfg.year, cfg.data);
@@ -230,51 +208,44 @@ impl<'a> Source<'a> {
         rate: Option<f64>,
         header: u64,
     ) -> Result<Recording, InputError> {
-        let file = self.file;
+        let account = self.account;
         let (rows, rate, start): (Rows, f64, f64) = if let Some(wanted) = self.reading.resample {
             if columns.edges != [false; 2] {
-                let rule = "counted edges cannot be resampled";
-                return Err(InputError::of_file(file, rule));
+                return Err(account.of_file("counted edges cannot be resampled"));
             }
-            let resampled = Resampled::new(file, Box::new(stamped), wanted, &self.remarks)?;
+            let resampled = Resampled::new(&account, Box::new(stamped), wanted)?;
             let start = resampled.start;
             (Box::new(resampled), wanted, start)
         } else if let Some(given) = rate {
             if !is_rate(given) {
-                let rule = format!(
-                    "the sample rate must be 100 to 200000 Hz, is {} Hz; --resample RATE makes another \
-                     of it and says so",
-                    Number(given)
-                );
-                return Err(InputError::of_file(file, rule));
+                let rule = "--resample RATE makes another of it and says so";
+                let rule = format!("{}; {rule}", not_a_rate(given));
+                return Err(account.of_file(rule));
             }
             let mut stamped = stamped.peekable();
-            let start = match stamped.peek() {
-                Some(Ok(first)) => first.stamp.time,
-                _ => 0.0,
-            };
-            (
-                Box::new(stamped.map(|it| it.map(|it| it.row))),
-                given,
-                start,
-            )
+            let first = stamped.peek().and_then(|it| it.as_ref().ok());
+            let start = first.map_or(0.0, |it| it.stamp.time);
+            let rows = stamped.map(|it| it.map(|it| it.row));
+            (Box::new(rows), given, start)
         } else {
-            let even = Even::of_rows(file, stamped, header)?;
+            let even = Even::of_rows(&account, stamped, header)?;
             let (rate, start) = (even.rate, even.start());
             (Box::new(even), rate, start)
         };
+        // Another rate would make something else of it.
+        let learnt = account.learnt.take();
+        let learnt = learnt.filter(|_| self.reading.resample.is_none());
         Ok(Recording {
             columns,
             rate,
             start,
             format: None,
-            is_episode: false,
-            learnt: None,
+            is_episode: learnt.is_some(),
+            learnt,
             size: self.size,
             rows,
-            meter: self.meter,
-            remarks: self.remarks,
-            doubt: Doubt::new(file, self.scene),
+            account,
+            doubt: Doubt::new(self.scene),
         })
     }
 }
@@ -288,9 +259,6 @@ fn format_of(layout: &Layout) -> String {
         0 => String::new(),
         lines => format!(", rows from line {}", lines + 1),
     };
-    format!(
-        "text, {} columns with {} between{decimal}{before}",
-        layout.columns.len(),
-        layout.delimiter
-    )
+    let (count, delimiter) = (layout.columns.len(), layout.delimiter);
+    format!("text, {count} columns with {delimiter} between{decimal}{before}")
 }

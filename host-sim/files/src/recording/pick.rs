@@ -3,9 +3,8 @@
 use touchdown_core::sample::CHANNELS;
 
 use super::mapping::{Axes, Column, Mapping, POSITIONS};
-use super::remarks::Remarks;
 use super::unit::{Displacement, Speed, Time, split};
-use crate::stream::{Columns, Row};
+use crate::stream::{Account, Columns, Row};
 use touchdown_scene::sensors::{SensorsConfig, to_sensor_axes};
 
 /// A column as the file has it.
@@ -30,7 +29,8 @@ impl Heading {
 pub struct Pick {
     positions: Vec<Affine>,
     speed: Option<Affine>,
-    levitated: Option<Threshold>,
+    /// Column and threshold of the levitation signal, and whether it is on below that.
+    levitated: Option<(usize, f64, bool)>,
     /// The column of time and the power of ten of its seconds.
     pub time: Option<(usize, i32)>,
     /// Angle of each plane's sensors, where the columns are along them, rad.
@@ -51,51 +51,39 @@ impl Affine {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Threshold {
-    column: usize,
-    above: f64,
-    reversed: bool,
-}
-
 impl Pick {
     /// Finds the columns of `mapping` among `found`; else the rule that is broken.
     pub fn new(
         mapping: &Mapping,
         found: &[Heading],
         sensors: &SensorsConfig,
-        remarks: &Remarks,
+        account: &Account,
     ) -> Result<Self, String> {
         let mut positions = Vec::new();
         for (name, column) in POSITIONS.iter().zip(mapping.positions()) {
             let Some(it) = column else { continue };
-            let index = find(&it.column, name, found)?;
-            let told = found[index].parts().1;
-            let read = told.and_then(|unit| unit.parse::<Displacement>().ok());
-            let unit = it.unit.or(read);
-            if let (Some(mine), Some(theirs)) = (it.unit, read)
-                && mine != theirs
+            let column = find(&it.column, name, found)?;
+            let unit = unit(it.unit, name, &found[column], "um")?;
+            if let Some(theirs) = found[column].parts().1
+                && Displacement::try_from(theirs.to_owned()).is_ok_and(|it| it != unit)
             {
-                let theirs = told.unwrap_or_default();
-                remarks.warn(format!(
+                account.warn(format!(
                     "{name}: the file says {theirs:?}, --columns another unit, which is taken"
                 ));
             }
             let scale = match (unit, it.sensitivity) {
-                (Some(Displacement::Length(metres)), None) => metres,
-                (Some(Displacement::Volts(volts)), Some(per_metre)) => volts / per_metre.0,
-                (Some(Displacement::Volts(_)), None) => {
-                    return Err(format!(
-                        "{name} is in volts: it needs a sensitivity, as \"200 mV/mil\""
-                    ));
+                (Displacement::Length(metres), None) => metres,
+                (Displacement::Volts(volts), Some(per_metre)) => volts / per_metre.0,
+                (Displacement::Volts(_), None) => {
+                    let rule = "it needs a sensitivity, as \"200 mV/mil\"";
+                    return Err(format!("{name} is in volts: {rule}"));
                 }
-                (Some(Displacement::Length(_)), Some(_)) => {
+                (Displacement::Length(_), Some(_)) => {
                     return Err(format!("{name} is a length: a sensitivity is for volts"));
                 }
-                (None, _) => return Err(no_unit(name, &found[index], "um")),
             };
             positions.push(Affine {
-                column: index,
+                column,
                 zero: it.offset,
                 factor: if it.reversed { -scale } else { scale },
             });
@@ -103,28 +91,21 @@ impl Pick {
         let mut speed = None;
         if let Some(it) = &mapping.speed {
             let column = find(&it.column, "speed", found)?;
-            let read = found[column].parts().1.and_then(|unit| unit.parse().ok());
-            let Some(Speed(scale)) = it.unit.or(read) else {
-                return Err(no_unit("speed", &found[column], "rpm"));
-            };
+            let Speed(scale) = unit(it.unit, "speed", &found[column], "rpm")?;
             speed = Some(Affine {
                 column,
                 zero: 0.0,
                 factor: if it.reversed { -scale } else { scale },
             });
         }
-        let mut levitated = None;
-        if let Some(it) = &mapping.levitated {
-            levitated = Some(Threshold {
-                column: find(&it.column, "levitated", found)?,
-                above: it.above,
-                reversed: it.reversed,
-            });
-        }
+        let levitated = mapping.levitated.as_ref().map(|it| {
+            let column = find(&it.column, "levitated", found)?;
+            Ok::<_, String>((column, it.above, it.reversed))
+        });
         let pick = Self {
             positions,
             speed,
-            levitated,
+            levitated: levitated.transpose()?,
             time: time(mapping, found)?,
             turned: (mapping.axes == Axes::Sensors).then_some(sensors.mounting_angle),
         };
@@ -137,11 +118,9 @@ impl Pick {
         let all: Vec<_> = self.quantities().collect();
         for (index, (name, column)) in all.iter().enumerate() {
             if let Some((before, _)) = all[..index].iter().find(|it| it.1 == *column) {
-                let (number, named) = (column + 1, &found[*column].text);
+                let which = format!("column {} {:?}", column + 1, found[*column].text);
                 let rule = "each needs a column of its own";
-                return Err(format!(
-                    "{before} and {name} are both column {number} {named:?}: {rule}"
-                ));
+                return Err(format!("{before} and {name} are both {which}: {rule}"));
             }
         }
         Ok(())
@@ -162,7 +141,7 @@ impl Pick {
         let positions = self.positions.iter().map(|it| it.column);
         let time = self.time.map(|it| ("time", it.0));
         let speed = self.speed.map(|it| ("speed", it.column));
-        let levitated = self.levitated.map(|it| ("levitated", it.column));
+        let levitated = self.levitated.map(|it| ("levitated", it.0));
         let all = POSITIONS.into_iter().zip(positions).chain(time);
         all.chain(speed).chain(levitated)
     }
@@ -188,9 +167,9 @@ impl Pick {
             time,
             positions,
             spin: spin.filter(|it| !it.is_nan()),
-            levitated: self.levitated.and_then(|it| {
-                let value = values[it.column];
-                (!value.is_nan()).then_some((value > it.above) != it.reversed)
+            levitated: self.levitated.and_then(|(column, above, reversed)| {
+                let value = values[column];
+                (!value.is_nan()).then_some((value > above) != reversed)
             }),
             edges: [None; 2],
         }
@@ -199,27 +178,22 @@ impl Pick {
 
 fn time(mapping: &Mapping, found: &[Heading]) -> Result<Option<(usize, i32)>, String> {
     let it = mapping.time.as_ref().map(toml::Spanned::get_ref);
-    let Some((it, column)) = it.and_then(|it| Some((it, it.column.as_ref()?))) else {
-        return Ok(None);
-    };
-    let index = find(column, "time", found)?;
-    let read = found[index].parts().1.and_then(|unit| unit.parse().ok());
-    let Some(Time(power)) = it.unit.or(read) else {
-        return Err(no_unit("time", &found[index], "s"));
-    };
-    Ok(Some((index, power)))
+    let it = it.and_then(|it| Some((it.column.as_ref()?, it.unit)));
+    it.map(|(column, given)| {
+        let index = find(column, "time", found)?;
+        let Time(power) = unit(given, "time", &found[index], "s")?;
+        Ok((index, power))
+    })
+    .transpose()
 }
 
 fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String> {
+    let count = found.len();
     let name = match column {
         Column::Number(number) => {
-            let index = number.checked_sub(1).filter(|it| *it < found.len());
-            return index.ok_or_else(|| {
-                format!(
-                    "{what}: there is no column {number}, there are {}",
-                    found.len()
-                )
-            });
+            let index = number.checked_sub(1).filter(|it| *it < count);
+            let rule = || format!("{what}: there is no column {number}, there are {count}");
+            return index.ok_or_else(rule);
         }
         Column::Name(name) => name.trim(),
     };
@@ -230,28 +204,32 @@ fn find(column: &Column, what: &str, found: &[Heading]) -> Result<usize, String>
         &|it| it.parts().0.eq_ignore_ascii_case(name),
     ];
     for test in tests {
-        let mut places = (0..found.len()).filter(|index| test(&found[*index]));
-        match (places.next(), places.next()) {
-            (Some(index), None) => return Ok(index),
+        let mut places = (1..=count).filter(|number| test(&found[number - 1]));
+        let rule = match (places.next(), places.next()) {
+            (Some(number), None) => return Ok(number - 1),
             (Some(one), Some(other)) => {
-                return Err(format!(
-                    "{what}: columns {} and {} are both named {name:?}; give the number",
-                    one + 1,
-                    other + 1
-                ));
+                format!("columns {one} and {other} are both named {name:?}; give the number")
             }
-            _ => {}
-        }
+            _ => continue,
+        };
+        return Err(format!("{what}: {rule}"));
     }
-    Err(format!(
-        "{what}: there is no column {name:?}; {}",
-        list(found)
-    ))
+    let columns = list(found);
+    Err(format!("{what}: there is no column {name:?}; {columns}"))
 }
 
-fn no_unit(what: &str, heading: &Heading, example: &str) -> String {
+/// The unit that is given, or else that of the column; `example` is one that could be given.
+fn unit<T: TryFrom<String>>(
+    given: Option<T>,
+    what: &str,
+    heading: &Heading,
+    example: &str,
+) -> Result<T, String> {
+    let told = || heading.parts().1?.to_owned().try_into().ok();
     let named = &heading.text;
-    format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+    given.or_else(told).ok_or_else(|| {
+        format!("{what}: column {named:?} does not say its unit; give it, as unit = \"{example}\"")
+    })
 }
 
 /// Columns that are named as in a stream: ax, ay, bx, by, speed, levitated.
@@ -261,10 +239,8 @@ pub fn by_name(found: &[Heading]) -> Option<Mapping> {
         found.iter().any(is)
     };
     let groups: [&[&str]; 4] = [&POSITIONS[..2], &POSITIONS[2..], &["speed"], &["levitated"]];
-    let mut groups = groups
-        .into_iter()
-        .filter(|it| it.iter().all(there))
-        .peekable();
+    let groups = groups.into_iter().filter(|it| it.iter().all(there));
+    let mut groups = groups.peekable();
     groups.peek().filter(|it| it[0] == POSITIONS[0])?;
     let table = |name: &&str| format!("[{name}]\ncolumn = \"{name}\"\n");
     toml::from_str(&groups.flatten().map(table).collect::<String>()).ok()
@@ -273,12 +249,9 @@ pub fn by_name(found: &[Heading]) -> Option<Mapping> {
 /// The columns, for people.
 pub fn list(found: &[Heading]) -> String {
     const NAMED: usize = 20;
-    let names = found.iter().take(NAMED).enumerate().map(|(index, it)| {
-        let unit = it
-            .unit
-            .as_ref()
-            .map_or(String::new(), |unit| format!(" in {unit}"));
-        format!("{} {:?}{unit}", index + 1, it.text)
+    let names = (1..).zip(found).take(NAMED).map(|(number, it)| {
+        let unit = it.unit.as_ref().map(|unit| format!(" in {unit}"));
+        format!("{number} {:?}{}", it.text, unit.unwrap_or_default())
     });
     let names: Vec<_> = names.collect();
     let more = if found.len() > NAMED { ", ..." } else { "" };

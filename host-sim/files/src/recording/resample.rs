@@ -1,12 +1,9 @@
 //! Rows at a rate that they do not have: linear between neighbours, and no value across a gap.
 
-use super::remarks::Remarks;
-use crate::stream::{Row, Stamped, median_interval};
+use crate::stream::{Account, LOOK_AHEAD, Row, Stamped, median_interval};
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::Number;
 
-/// Intervals from which the usual one is known.
-const LOOK_AHEAD: usize = 4096;
 /// An interval longer than so many usual ones is a gap: what was between is not known.
 const GAP: f64 = 3.5;
 
@@ -23,7 +20,7 @@ type StampedRows = Box<dyn Iterator<Item = Result<Stamped, InputError>>>;
 
 /// Rows at a rate of choice.
 pub struct Resampled {
-    file: String,
+    account: Account,
     rows: StampedRows,
     /// The rows about the next time.
     from: Stamped,
@@ -37,26 +34,20 @@ pub struct Resampled {
     made: u64,
     gaps: u64,
     empty: u64,
-    remarks: Remarks,
 }
 
 impl Resampled {
-    /// Of `rows` of the file `file`, at `rate` (Hz), from the first of them on.
-    pub fn new(
-        file: &str,
-        mut rows: StampedRows,
-        rate: f64,
-        remarks: &Remarks,
-    ) -> Result<Self, InputError> {
+    /// Of `rows`, at `rate` (Hz), from the first of them on.
+    pub fn new(account: &Account, mut rows: StampedRows, rate: f64) -> Result<Self, InputError> {
         let Some(from) = rows.next().transpose()? else {
-            return Err(InputError::of_file(file, "there are no rows"));
+            return Err(account.of_file("there are no rows"));
         };
         let start = from.stamp.time;
         let ahead = (&mut rows).take(LOOK_AHEAD);
         let ahead = ahead.collect::<Result<Vec<_>, _>>()?;
         let usual = median_interval(start, ahead.iter().map(|it| it.stamp.time));
         let mut resampled = Self {
-            file: file.to_owned(),
+            account: account.clone(),
             rows: Box::new(ahead.into_iter().map(Ok).chain(rows)),
             from,
             to: None,
@@ -67,18 +58,16 @@ impl Resampled {
             made: 0,
             gaps: 0,
             empty: 0,
-            remarks: remarks.clone(),
         };
         resampled.to = resampled.read()?;
         if resampled.to.is_none() {
             let rule = "one row alone has no sample rate";
-            return Err(InputError::at_line(file, from.line, rule));
+            return Err(account.at_line(from.line, rule));
         }
         if rate * usual > FINEST {
-            let rule = format!(
-                "most rows are {usual:.3e} s apart: at {rate} Hz that is more than {FINEST} samples a row, most of them made up"
-            );
-            return Err(InputError::of_file(file, rule));
+            let rule = format!("more than {FINEST} samples a row, most of them made up");
+            let apart = format!("most rows are {usual:.3e} s apart: at {rate} Hz that is");
+            return Err(account.of_file(format!("{apart} {rule}")));
         }
         Ok(resampled)
     }
@@ -90,26 +79,18 @@ impl Resampled {
         self.read += 1;
         let last = self.to.unwrap_or(self.from).stamp.time;
         let time = next.stamp.time;
-        if time <= last {
-            let rule = format!(
-                "time must increase, but {} s follows {} s: no rate can be made of that",
-                Number(time),
-                Number(last)
-            );
-            return Err(InputError::at_line(&self.file, next.line, rule));
-        }
-        if time - last > LONGEST_GAP {
-            let rule = format!(
-                "{} s is followed by {} s: a gap of more than a minute is between two recordings",
-                Number(last),
-                Number(time)
-            );
-            return Err(InputError::at_line(&self.file, next.line, rule));
-        }
-        if time - last > GAP * self.usual {
-            self.gaps += 1;
-        }
-        Ok(Some(next))
+        let (before, now) = (Number(last), Number(time));
+        let rule = if time <= last {
+            let rule = "no rate can be made of that";
+            format!("time must increase, but {now} s follows {before} s: {rule}")
+        } else if time - last > LONGEST_GAP {
+            let rule = "a gap of more than a minute is between two recordings";
+            format!("{before} s is followed by {now} s: {rule}")
+        } else {
+            self.gaps += u64::from(time - last > GAP * self.usual);
+            return Ok(Some(next));
+        };
+        Err(self.account.at_line(next.line, rule))
     }
 
     fn make(&mut self) -> Result<Option<Row>, InputError> {
@@ -135,17 +116,18 @@ impl Resampled {
             0 => String::new(),
             gaps => format!("; {gaps} gaps, in which nothing is made up"),
         };
-        let times = self.from.stamp.time - self.start;
-        self.remarks.warn(format!(
-            "{}: resampled, linear between neighbours, from {} rows at {:.6} Hz on average to {} samples at {} Hz, \
-             {} of them without a value{gaps}",
-            self.file,
-            self.read,
-            (self.read - 1) as f64 / times,
-            self.made,
-            self.rate,
-            self.empty,
-        ));
+        let Self {
+            read,
+            made,
+            rate,
+            empty,
+            ..
+        } = self;
+        let mean = (read - 1) as f64 / (self.from.stamp.time - self.start);
+        let from = format!("from {read} rows at {mean:.6} Hz on average");
+        let to = format!("to {made} samples at {rate} Hz, {empty} of them without a value{gaps}");
+        let rule = format!("resampled, linear between neighbours, {from} {to}");
+        self.account.doubt(&rule);
     }
 }
 
@@ -155,32 +137,21 @@ fn between(from: &Stamped, to: &Stamped, time: f64, usual: f64) -> Row {
     let at_from = time - from.stamp.time <= SAME * usual;
     let at_to = to.stamp.time - time <= SAME * usual;
     let part = (time - from.stamp.time) / length;
-    let mix = |a: f64, b: f64| {
-        if at_from {
-            a
-        } else if at_to {
-            b
-        } else if length > GAP * usual {
-            f64::NAN
-        } else {
-            a + part * (b - a)
-        }
+    let mix = |a: f64, b: f64| match (at_from, at_to) {
+        (true, _) => a,
+        (false, true) => b,
+        _ if length > GAP * usual => f64::NAN,
+        _ => a + part * (b - a),
     };
-    let mut row = from.row;
-    row.time = time;
-    for (place, (a, b)) in
-        (row.positions.iter_mut()).zip(from.row.positions.iter().zip(to.row.positions))
-    {
-        *place = mix(*a, b);
+    let (from, to) = (&from.row, &to.row);
+    let spins = from.spin.zip(to.spin);
+    Row {
+        time,
+        positions: std::array::from_fn(|it| mix(from.positions[it], to.positions[it])),
+        spin: spins.map(|(a, b)| mix(a, b)).filter(|it| !it.is_nan()),
+        levitated: if at_to { to.levitated } else { from.levitated },
+        edges: from.edges,
     }
-    let spins = from.row.spin.zip(to.row.spin);
-    row.spin = spins.map(|(a, b)| mix(a, b)).filter(|it| !it.is_nan());
-    row.levitated = if at_to {
-        to.row.levitated
-    } else {
-        from.row.levitated
-    };
-    row
 }
 
 impl Iterator for Resampled {

@@ -7,9 +7,8 @@ use csv::ByteRecord;
 use super::layout::{HEAD, Layout, text_of, with_point};
 use super::mapping::{Mapping, TextHints};
 use super::pick::{Pick, list};
-use super::remarks::Remarks;
-use crate::stream::{Bounded, Meter, Stamp, Stamped, csv_error, is_missing};
-use touchdown_base::input_error::{InputError, is_utf_16, reason};
+use crate::stream::{Account, Bounded, Stamp, Stamped, is_missing};
+use touchdown_base::input_error::{InputError, UTF_16, is_utf_16, reason};
 use touchdown_scene::sensors::SensorsConfig;
 
 /// The first part of a file, and the rest of it.
@@ -19,20 +18,18 @@ pub struct Head<R> {
 }
 
 impl<R: Read> Head<R> {
-    /// Reads the first part of `bytes`; errors name the file `file`.
-    pub fn read(file: &str, mut bytes: R) -> Result<Self, InputError> {
+    /// Reads the first part of `bytes`, in an encoding that is known.
+    pub fn read(mut bytes: R, account: &Account) -> Result<Self, InputError> {
         let mut head = Vec::new();
         let read = (&mut bytes).take(HEAD as u64).read_to_end(&mut head);
-        read.map_err(|error| InputError::of_file(file, reason(&error)))?;
+        read.map_err(|error| account.of_file(reason(&error)))?;
+        if is_utf_16(&head) {
+            return Err(account.at_line(1, UTF_16));
+        }
         Ok(Self {
             bytes: head,
             rest: bytes,
         })
-    }
-
-    /// Whether it is in an encoding that is not read.
-    pub fn is_utf_16(&self) -> bool {
-        is_utf_16(&self.bytes)
     }
 
     /// How it is written.
@@ -50,50 +47,40 @@ impl<R: Read> Head<R> {
 
 /// Rows of a text, its columns as a mapping has them.
 pub struct TextRows<R> {
-    file: String,
-    /// How it is written.
+    account: Account,
     pub layout: Layout,
-    /// What is taken of it.
     pub pick: Pick,
     used: Vec<usize>,
     /// The rate that the mapping gives, Hz.
     pub rate: Option<f64>,
     records: csv::Reader<Bounded<Chain<Cursor<Vec<u8>>, R>>>,
-    meter: Meter,
     record: ByteRecord,
     values: Vec<f64>,
     /// Rows so far.
     rows: u64,
     /// Whether `record` is one that is not handed out yet, or why it cannot be read.
     there: Result<bool, InputError>,
-    remarks: Remarks,
 }
 
 impl<R: Read> TextRows<R> {
     /// Finds how the text is written and where its columns are.
     pub fn new(
-        file: &str,
         head: Head<R>,
         mapping: &Mapping,
         sensors: &SensorsConfig,
-        remarks: &Remarks,
-        meter: &Meter,
+        account: &Account,
     ) -> Result<Self, InputError> {
-        let layout = head
-            .layout(&mapping.text)
-            .map_err(|(line, rule)| InputError::at_line(file, line, rule))?;
+        let layout = head.layout(&mapping.text);
+        let layout = layout.map_err(|(line, rule)| account.at_line(line, rule))?;
         let header = layout.before.1.max(1);
-        let fail = |rule: String| InputError::at_line(file, header, rule);
-        let pick = Pick::new(mapping, &layout.columns, sensors, remarks).map_err(fail)?;
+        let fail = |rule: String| account.at_line(header, rule);
+        let pick = Pick::new(mapping, &layout.columns, sensors, account).map_err(fail)?;
         let rate = mapping.time.as_ref().and_then(|it| it.get_ref().rate_hz);
         if pick.time.is_none() && rate.is_none() {
-            let rule = format!(
-                "nothing says when its rows were sampled: [time] of --columns needs a column or rate_hz; {}",
-                list(&layout.columns)
-            );
-            return Err(fail(rule));
+            let rule = "nothing says when its rows were sampled: [time] of --columns needs a column or rate_hz";
+            return Err(fail(format!("{rule}; {}", list(&layout.columns))));
         }
-        let bytes = Bounded::new(head.whole(layout.before.0), meter);
+        let bytes = Bounded::new(head.whole(layout.before.0), account);
         let records = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -102,18 +89,16 @@ impl<R: Read> TextRows<R> {
             .comment(layout.comment.map(|it| it as u8))
             .from_reader(bytes);
         let mut rows = Self {
-            file: file.to_owned(),
+            account: account.clone(),
             values: vec![f64::NAN; layout.columns.len()],
             used: pick.used(),
             layout,
             pick,
             rate,
             records,
-            meter: meter.clone(),
             record: ByteRecord::new(),
             rows: 0,
             there: Ok(false),
-            remarks: remarks.clone(),
         };
         rows.there = rows.advance();
         Ok(rows)
@@ -126,7 +111,7 @@ impl<R: Read> TextRows<R> {
     fn advance(&mut self) -> Result<bool, InputError> {
         let read = self.records.read_byte_record(&mut self.record);
         let before = self.layout.before.1;
-        read.map_err(|error| csv_error(&self.file, &error, &self.meter).further(before))
+        read.map_err(|error| self.account.csv_error(&error).further(before))
     }
 
     /// The next row. A number that lost its last digits is still a number: only the end of its line shows that the
@@ -138,24 +123,21 @@ impl<R: Read> TextRows<R> {
         let line = self.line();
         let row = self.parse(line);
         self.there = self.advance();
-        if matches!(self.there, Ok(false)) && !self.meter.ends_in(b"\r\n") {
-            self.remarks.warn(format!(
-                "{}:{line}: the last line is left out: it does not end with a newline, so it may be cut off",
-                self.file
-            ));
+        if matches!(self.there, Ok(false)) && !self.account.ends_in(b"\r\n") {
+            let rule = "it does not end with a newline, so it may be cut off";
+            let at = format!("{}:{line}", self.account.file);
+            let text = format!("{at}: the last line is left out: {rule}");
+            self.account.warn(text);
             return Ok(None);
         }
-        let row = row.map_err(|rule| InputError::at_line(&self.file, line, rule));
+        let row = row.map_err(|rule| self.account.at_line(line, rule));
         row.map(Some)
     }
 
     fn parse(&mut self, line: u64) -> Result<Stamped, String> {
-        let columns = self.layout.columns.len();
-        if self.record.len() != columns {
-            let there = self.record.len();
-            return Err(format!(
-                "a row needs {columns} fields, this one has {there}"
-            ));
+        let (needed, there) = (self.layout.columns.len(), self.record.len());
+        if there != needed {
+            return Err(format!("a row needs {needed} fields, this one has {there}"));
         }
         for index in 0..self.used.len() {
             let column = self.used[index];
@@ -173,38 +155,38 @@ impl<R: Read> TextRows<R> {
         })
     }
 
-    fn name(&self, column: usize) -> String {
-        match self.layout.columns[column].text.as_str() {
-            "" => format!("column {}", column + 1),
-            name => name.to_owned(),
-        }
+    /// What `read` makes of a field; else that it must be `wanted`, and `more`.
+    fn field<T>(
+        &self,
+        column: usize,
+        (wanted, more): (&str, &str),
+        read: impl FnOnce(&str) -> Option<T>,
+    ) -> Result<T, String> {
+        let bytes = &self.record[column];
+        read(str::from_utf8(bytes).unwrap_or("?")).ok_or_else(|| {
+            let text = text_of(bytes);
+            match self.layout.columns[column].text.as_str() {
+                "" => format!("column {} must be {wanted}, is {text:?}{more}", column + 1),
+                name => format!("{name} must be {wanted}, is {text:?}{more}"),
+            }
+        })
     }
 
     fn number(&self, column: usize) -> Result<f64, String> {
-        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
-        if is_missing(text) {
-            return Ok(f64::NAN);
-        }
-        let number = with_point(text, self.layout.decimal).and_then(|it| it.parse::<f64>().ok());
-        number.filter(|it| it.is_finite()).ok_or_else(|| {
-            let text = text_of(&self.record[column]);
-            format!(
-                "{} must be a finite number, empty or NaN, is {text:?}",
-                self.name(column)
-            )
+        let wanted = ("a finite number, empty or NaN", "");
+        self.field(column, wanted, |text| {
+            if is_missing(text) {
+                return Some(f64::NAN);
+            }
+            let number: f64 = with_point(text, self.layout.decimal)?.parse().ok()?;
+            number.is_finite().then_some(number)
         })
     }
 
     fn stamp(&self, column: usize, power: i32) -> Result<Stamp, String> {
-        let text = std::str::from_utf8(&self.record[column]).unwrap_or("?");
-        let point = with_point(text, self.layout.decimal);
-        let stamp = point.and_then(|it| Stamp::parse(&it)?.times_ten_to(power));
-        stamp.ok_or_else(|| {
-            let text = text_of(&self.record[column]);
-            format!(
-                "{} must be a finite number, is {text:?}; without one, give rate_hz in the [time] of --columns",
-                self.name(column)
-            )
+        let more = "; without one, give rate_hz in the [time] of --columns";
+        self.field(column, ("a finite number", more), |text| {
+            Stamp::parse(&with_point(text, self.layout.decimal)?)?.times_ten_to(power)
         })
     }
 }

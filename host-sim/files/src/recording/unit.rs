@@ -1,7 +1,5 @@
 //! Units as loggers and people write them.
 
-use std::str::FromStr;
-
 use serde::Deserialize;
 
 /// Of a displacement, or of what a sensor gives for one.
@@ -40,16 +38,15 @@ fn plain(text: &str) -> String {
 }
 
 fn unknown<T>(quantity: &str, units: &str, text: &str) -> Result<T, String> {
-    Err(format!(
-        "the unit of {quantity} must be {units}, is {text:?}"
-    ))
+    let rule = format!("must be {units}, is {text:?}");
+    Err(format!("the unit of {quantity} {rule}"))
 }
 
-impl FromStr for Displacement {
-    type Err = String;
+impl TryFrom<String> for Displacement {
+    type Error = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        Ok(match plain(text).as_str() {
+    fn try_from(text: String) -> Result<Self, String> {
+        Ok(match plain(&text).as_str() {
             "um" | "micron" | "microns" | "micrometer" | "micrometre" => Self::Length(1e-6),
             "nm" => Self::Length(1e-9),
             "mm" => Self::Length(1e-3),
@@ -58,54 +55,57 @@ impl FromStr for Displacement {
             "in" | "inch" => Self::Length(INCH),
             "v" | "volt" | "volts" => Self::Volts(1.0),
             "mv" => Self::Volts(1e-3),
-            _ => return unknown("a displacement", "um, nm, mm, m, mil, in, V or mV", text),
+            _ => return unknown("a displacement", "um, nm, mm, m, mil, in, V or mV", &text),
         })
     }
 }
 
-impl FromStr for Time {
-    type Err = String;
+impl TryFrom<String> for Time {
+    type Error = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        Ok(Self(match plain(text).as_str() {
+    fn try_from(text: String) -> Result<Self, String> {
+        Ok(Self(match plain(&text).as_str() {
             "s" | "sec" | "second" | "seconds" => 0,
             "ms" | "msec" => -3,
             "us" | "usec" => -6,
             "ns" => -9,
-            _ => return unknown("time", "s, ms, us or ns", text),
+            _ => return unknown("time", "s, ms, us or ns", &text),
         }))
     }
 }
 
-impl FromStr for Speed {
-    type Err = String;
+impl TryFrom<String> for Speed {
+    type Error = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        Ok(Self(match plain(text).as_str() {
+    fn try_from(text: String) -> Result<Self, String> {
+        Ok(Self(match plain(&text).as_str() {
             "rpm" | "r/min" | "1/min" | "min-1" | "rev/min" => TURN / 60.0,
             "rad/s" => 1.0,
             "hz" | "1/s" | "rps" | "rev/s" => TURN,
-            _ => return unknown("a speed", "rpm, rad/s or Hz", text),
+            _ => return unknown("a speed", "rpm, rad/s or Hz", &text),
         }))
     }
 }
 
-impl FromStr for Sensitivity {
-    type Err = String;
+impl TryFrom<String> for Sensitivity {
+    type Error = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn try_from(text: String) -> Result<Self, String> {
         let rule = || {
-            format!(
-                "a sensitivity is a number and its unit, as \"200 mV/mil\" or \"-7.87 V/mm\", is {text:?}"
-            )
+            let examples = "as \"200 mV/mil\" or \"-7.87 V/mm\"";
+            format!("a sensitivity is a number and its unit, {examples}, is {text:?}")
         };
         let text = text.trim();
         let digits = |it: char| it.is_ascii_digit() || "+-.".contains(it);
         let end = text.find(|it| !digits(it)).ok_or_else(rule)?;
         let number: f64 = text[..end].parse().map_err(|_| rule())?;
         let (volts, length) = text[end..].split_once('/').ok_or_else(rule)?;
-        let units = (volts.parse(), length.parse());
-        let (Ok(Displacement::Volts(volts)), Ok(Displacement::Length(length))) = units else {
+        let units = [volts, length].map(|it| it.to_owned().try_into());
+        let [
+            Ok(Displacement::Volts(volts)),
+            Ok(Displacement::Length(length)),
+        ] = units
+        else {
             return Err(rule());
         };
         if number == 0.0 {
@@ -115,28 +115,13 @@ impl FromStr for Sensitivity {
     }
 }
 
-macro_rules! of_string {
-    ($($unit:ty),*) => {$(
-        impl TryFrom<String> for $unit {
-            type Error = String;
-
-            fn try_from(text: String) -> Result<Self, String> {
-                text.parse()
-            }
-        }
-    )*};
-}
-
-of_string!(Displacement, Time, Speed, Sensitivity);
-
 /// A column's name and the unit in it: `X1 [um]`, `X1 (um)`, `X1 / um`, `X1, um`, `x1_um`.
 pub fn split(heading: &str) -> (&str, Option<&str>) {
     let heading = heading.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
-        let inside = heading
-            .strip_suffix(close)
-            .and_then(|it| it.rsplit_once(open));
-        if let Some((name, unit)) = inside {
+        if let Some(inside) = heading.strip_suffix(close)
+            && let Some((name, unit)) = inside.rsplit_once(open)
+        {
             return (name.trim(), Some(unit.trim()));
         }
     }
@@ -152,9 +137,10 @@ pub fn split(heading: &str) -> (&str, Option<&str>) {
 
 /// Whether it is the unit of anything that a recording has.
 pub fn is_unit(text: &str) -> bool {
-    text.parse::<Displacement>().is_ok()
-        || text.parse::<Time>().is_ok()
-        || text.parse::<Speed>().is_ok()
+    let text = || text.to_owned();
+    Displacement::try_from(text()).is_ok()
+        || Time::try_from(text()).is_ok()
+        || Speed::try_from(text()).is_ok()
 }
 
 #[cfg(test)]
@@ -173,7 +159,7 @@ mod tests {
             let (name, unit) = split(heading);
             assert_eq!(name, "X1", "{heading}");
             assert_eq!(
-                unit.unwrap().parse(),
+                unit.unwrap().to_owned().try_into(),
                 Ok(Displacement::Length(1e-6)),
                 "{heading}"
             );
@@ -184,7 +170,7 @@ mod tests {
 
     #[test]
     fn sensitivities_of_proximity_probes() {
-        let of = |text: &str| text.parse::<Sensitivity>().map(|it| it.0);
+        let of = |text: &str| Sensitivity::try_from(text.to_owned()).map(|it| it.0);
         // 200 mV/mil is 7.874 V/mm.
         assert!((of("200 mV/mil").unwrap() - 7_874.015_748).abs() < 1e-3);
         assert!((of("-7.87 V/mm").unwrap() + 7870.0).abs() < 1e-9);

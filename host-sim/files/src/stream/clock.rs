@@ -130,11 +130,8 @@ impl Clock {
         let time = stamp.time;
         let interval = time - self.last;
         if interval <= 0.0 {
-            return Err(format!(
-                "time_s must increase, but {} follows {}",
-                Number(time),
-                Number(self.last)
-            ));
+            let (now, last) = (Number(time), Number(self.last));
+            return Err(format!("time_s must increase, but {now} follows {last}"));
         }
         let since = time - self.first;
         let count = (self.intervals + 1) as f64;
@@ -151,10 +148,9 @@ impl Clock {
         let low = ((since - slack) / count).max(*self.period.start());
         let high = ((since + slack) / count).min(*self.period.end());
         if low > high || uneven > (2.0 * rounding).min(coarsest) {
-            return Err(format!(
-                "the sample rate is not constant: {interval:.3e} s after the row before, the \
-                 period is {period:.3e} s"
-            ));
+            let rule =
+                format!("{interval:.3e} s after the row before, the period is {period:.3e} s");
+            return Err(format!("the sample rate is not constant: {rule}"));
         }
         self.period = low..=high;
         self.last = time;
@@ -174,16 +170,18 @@ impl Clock {
         let rounded = self.print.rounding(self.first) + self.print.rounding(self.last);
         let slack = rounded.min(COARSEST / mean) + DRIFT * since;
         let allowed = count / (since + slack)..=count / (since - slack);
-        let roundest = [1e4, 1e3, 1e2, 1e1, 1.0]
-            .map(|unit| (mean / unit).round() * unit)
-            .into_iter()
-            .find(|rate| allowed.contains(rate));
+        let roundest = round(mean).into_iter().find(|it| allowed.contains(it));
         Some(roundest.unwrap_or(mean))
     }
 
     fn middle(&self) -> f64 {
         0.5 * (self.period.start() + self.period.end())
     }
+}
+
+/// The number, rounded to ever more digits.
+pub(super) fn round(number: f64) -> [f64; 5] {
+    [1e4, 1e3, 1e2, 1e1, 1.0].map(|unit| (number / unit).round() * unit)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::account::Account;
 use super::clock::{Clock, LOOK_AHEAD, Stamp};
 use super::row::{RATES, Row, Stamped};
 use super::survey::Survey;
@@ -16,9 +17,15 @@ pub fn is_rate(rate: f64) -> bool {
     (RATES.start() * (1.0 - ROUNDING)..=RATES.end() * (1.0 + ROUNDING)).contains(&rate)
 }
 
+/// That `rate` (Hz) is none.
+pub(crate) fn not_a_rate(rate: f64) -> String {
+    let rate = Number(rate);
+    format!("the sample rate must be 100 to 200000 Hz, is {rate} Hz")
+}
+
 /// Rows held to the rate of the first [`LOOK_AHEAD`] of them.
 pub struct Even<I> {
-    file: String,
+    account: Account,
     rows: I,
     clock: Clock,
     survey: Survey,
@@ -30,13 +37,9 @@ pub struct Even<I> {
 
 impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
     /// Reads the first rows; `before` is the line of the header.
-    pub fn of_rows(file: &str, mut rows: I, before: u64) -> Result<Self, InputError> {
-        let fail = |line: u64, rule: String| InputError::at_line(file, line, rule);
+    pub fn of_rows(account: &Account, mut rows: I, before: u64) -> Result<Self, InputError> {
         let Some(first) = rows.next().transpose()? else {
-            return Err(fail(
-                before,
-                "there are no rows after the header".to_owned(),
-            ));
+            return Err(account.at_line(before, "there are no rows after the header"));
         };
         let mut clock = Clock::new(first.stamp);
         let mut ahead = VecDeque::from([first.row]);
@@ -51,7 +54,7 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         let finished = stamps.len() + 1 < LOOK_AHEAD;
         let times = stamps.iter().map(|(stamp, _)| stamp.time);
         let mut even = Self {
-            file: file.to_owned(),
+            account: account.clone(),
             rows,
             clock,
             survey: Survey::new(first.stamp.time, times),
@@ -68,14 +71,10 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         }
         let Some(rate) = even.clock.rate() else {
             let rule = "one row alone has no sample rate";
-            return Err(fail(first.line, rule.to_owned()));
+            return Err(account.at_line(first.line, rule));
         };
         if !is_rate(rate) {
-            let rule = format!(
-                "the sample rate must be 100 to 200000 Hz, is {} Hz",
-                Number(rate)
-            );
-            return Err(fail(second, rule));
+            return Err(account.at_line(second, not_a_rate(rate)));
         }
         even.rate = rate;
         Ok(even)
@@ -107,7 +106,8 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
     /// Reads on, to tell of all that is uneven.
     fn uneven(&mut self, line: u64, rule: String) -> InputError {
         self.survey.read_on(&mut self.rows);
-        InputError::at_line(&self.file, line, format!("{rule}; {}", self.survey))
+        self.account
+            .at_line(line, format!("{rule}; {}", self.survey))
     }
 }
 

@@ -9,22 +9,11 @@ pub const LEARNT: &str = "learnt";
 
 /// As a field.
 pub fn to_field<'a>(parts: impl Iterator<Item = &'a [u8]>) -> String {
-    let digits = |part: &[u8]| part.iter().map(|byte| format!("{byte:02x}")).collect();
-    parts.map(digits).collect::<Vec<String>>().join("-")
+    parts.map(hex::encode).collect::<Vec<_>>().join("-")
 }
 
 /// From a field.
 pub fn of_field(text: &str) -> Option<Learnt> {
-    let parts: Option<Vec<Vec<u8>>> = text.split('-').map(bytes).collect();
-    of_parts(parts?.iter().map(Vec::as_slice))
-}
-
-fn bytes(digits: &str) -> Option<Vec<u8>> {
-    let (pairs, rest) = digits.as_bytes().as_chunks::<2>();
-    let byte = |pair: &[u8; 2]| u8::from_str_radix(str::from_utf8(pair).ok()?, 16).ok();
-    if rest.is_empty() {
-        pairs.iter().map(byte).collect()
-    } else {
-        None
-    }
+    let parts: Result<Vec<_>, _> = text.split('-').map(hex::decode).collect();
+    of_parts(parts.ok()?.iter().map(Vec::as_slice))
 }

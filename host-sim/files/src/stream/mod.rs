@@ -4,6 +4,7 @@
 //! ball bearing, `[,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us]`: edges so
 //! far (which may wrap at 65536) and the time since the last one. An episode of the drop log has `[,learnt]` at the end.
 
+mod account;
 mod bounded;
 mod clock;
 mod even;
@@ -13,18 +14,21 @@ mod row;
 mod survey;
 mod write;
 
-pub use bounded::{Bounded, LONGEST, Meter};
+pub use account::Account;
+pub use bounded::{Bounded, LONGEST};
 pub use clock::{Clock, LOOK_AHEAD, Stamp};
+pub(crate) use even::not_a_rate;
 pub use even::{Even, is_rate};
 pub(crate) use learnt::LEARNT;
 pub use learnt::{of_field, to_field};
 pub use read::Records;
-pub(crate) use read::{csv_error, is_missing};
+pub(crate) use read::is_missing;
 pub use row::{Pulses, Row, Stamped};
 pub(crate) use survey::median_interval;
 pub use write::StreamWriter;
 
 use touchdown_core::sample::{CHANNELS, Edges, Sample, TACHOMETERS};
+use touchdown_core::sensing::PlaneCalibration;
 use touchdown_core::tachometer::TachometersConfig;
 
 use touchdown_scene::sensors::{SensorsConfig, displacement, quantise, to_sensor_axes};
@@ -125,32 +129,38 @@ pub fn to_sample(row: &Row, sensors: &SensorsConfig, rate: f64) -> Sample {
     sample
 }
 
-/// Displacements in the scene's axes, of those along the channels' own axes, as `sensors` are mounted.
-pub fn of_own_axes(along: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
-    let mut positions = *along;
+/// The positions, plane by plane, by what they, the plane's mounting angle and its record become.
+fn by_plane(
+    positions: &[f64; CHANNELS],
+    sensors: &SensorsConfig,
+    becomes: impl Fn([f64; 2], f64, PlaneCalibration) -> [f64; 2],
+) -> [f64; CHANNELS] {
+    let mut all = *positions;
     let record = sensors.calibration.unwrap_or_default();
     let planes = sensors.mounting_angle.into_iter().zip(record.planes);
-    for (place, (angle, of)) in positions.as_chunks_mut::<2>().0.iter_mut().zip(planes) {
-        let (sin, cos) = f64::from(of.skew).sin_cos();
-        let second = (place[1] + sin * place[0]) / cos;
-        *place = to_sensor_axes([place[0], second], -angle);
+    for (place, (angle, of)) in all.as_chunks_mut::<2>().0.iter_mut().zip(planes) {
+        *place = becomes(*place, angle, of);
     }
-    positions
+    all
+}
+
+/// Displacements in the scene's axes, of those along the channels' own axes, as `sensors` are mounted.
+pub fn of_own_axes(along: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
+    by_plane(along, sensors, |[x, y], angle, of| {
+        let (sin, cos) = f64::from(of.skew).sin_cos();
+        to_sensor_axes([x, (y + sin * x) / cos], -angle)
+    })
 }
 
 /// The readings that the record of `sensors` made these displacements of: the export of an episode has it applied.
 pub fn without_record(positions: &[f64; CHANNELS], sensors: &SensorsConfig) -> [f64; CHANNELS] {
-    let mut readings = *positions;
-    let record = sensors.calibration.unwrap_or_default();
-    let planes = sensors.mounting_angle.into_iter().zip(record.planes);
-    for (place, (angle, of)) in readings.as_chunks_mut::<2>().0.iter_mut().zip(planes) {
-        let [first, _] = to_sensor_axes(*place, angle);
-        let [_, second] = to_sensor_axes(*place, angle + f64::from(of.skew));
+    by_plane(positions, sensors, |place, angle, of| {
+        let [first, _] = to_sensor_axes(place, angle);
+        let [_, second] = to_sensor_axes(place, angle + f64::from(of.skew));
         let read = [(first, 0), (second, 1)]
             .map(|(along, axis)| f64::from(of.zero[axis]) + f64::from(of.gain[axis]) * along);
-        *place = to_sensor_axes(read, -angle);
-    }
-    readings
+        to_sensor_axes(read, -angle)
+    })
 }
 
 /// The row that shows what the sensors read in `sample` at `rate` (Hz).
@@ -161,15 +171,12 @@ pub fn to_row(time: f64, sample: &Sample, sensors: &SensorsConfig, rate: f64) ->
             *position = displacement(sensors, sample.counts[channel]);
         }
     }
-    let (planes, _) = positions.as_chunks_mut::<2>();
-    for (place, angle) in planes.iter_mut().zip(sensors.mounting_angle) {
-        if angle != 0.0 {
-            *place = to_sensor_axes(*place, -angle);
-        }
-    }
     Row {
         time,
-        positions,
+        positions: by_plane(&positions, sensors, |place, angle, _| match angle {
+            0.0 => place,
+            _ => to_sensor_axes(place, -angle),
+        }),
         spin: sample.spin.map(f64::from),
         levitated: sample.levitated,
         edges: sample.edges.map(|it| it.map(|it| Pulses::of(it, rate))),

@@ -1,19 +1,17 @@
 //! Reads a recorded stream, strictly: a row that breaks a rule ends it.
 
-use std::cell::RefCell;
 use std::io::Read;
-use std::rc::Rc;
 
 use csv::StringRecord;
-use touchdown_core::learnt::Learnt;
 use touchdown_core::sample::{CHANNELS, TACHOMETERS};
 
 use super::Columns;
-use super::bounded::{Bounded, Meter};
+use super::account::Account;
+use super::bounded::Bounded;
 use super::clock::Stamp;
 use super::learnt::{LEARNT, of_field};
 use super::row::{Pulses, Row, Stamped};
-use touchdown_base::input_error::{InputError, reason};
+use touchdown_base::input_error::InputError;
 use touchdown_scene::rule::{MICRO, RPM};
 
 /// Whole numbers up to here are exact.
@@ -21,32 +19,25 @@ const MOST_EDGES: f64 = 9_007_199_254_740_992.0;
 
 /// The rows of a stream as they stand there, whatever their times.
 pub struct Records<R> {
-    file: String,
+    account: Account,
     records: csv::Reader<Bounded<R>>,
-    meter: Meter,
     /// The columns.
     pub columns: Columns,
     header: Vec<&'static str>,
-    /// What had been learnt before the first row, once that is read.
-    pub learnt: Before,
     record: StringRecord,
     begun: bool,
 }
 
-/// What had been learnt before the first row; none before that is read, or without that column.
-pub type Before = Rc<RefCell<Option<Box<Learnt>>>>;
-
 impl<R: Read> Records<R> {
-    /// Reads the header of `bytes`, which `meter` counts.
-    pub fn new(file: &str, bytes: R, meter: &Meter) -> Result<Self, InputError> {
-        let bytes = Bounded::new(bytes, meter);
+    /// Reads the header of `bytes`, of which `account` is.
+    pub fn new(bytes: R, account: &Account) -> Result<Self, InputError> {
+        let bytes = Bounded::new(bytes, account);
         let mut records = csv::ReaderBuilder::new()
             .flexible(true)
             .trim(csv::Trim::All)
             .from_reader(bytes);
-        let header = records
-            .headers()
-            .map_err(|error| csv_error(file, &error, meter))?;
+        let header = records.headers();
+        let header = header.map_err(|error| account.csv_error(&error))?;
         let names: Vec<_> = header.iter().collect();
         let known = names.strip_suffix(&[LEARNT]).unwrap_or(&names);
         let Some(columns) = Columns::of_header(known) else {
@@ -55,17 +46,15 @@ impl<R: Read> Records<R> {
                  [,inner_ring_edges,inner_ring_edge_age_us][,cage_edges,cage_edge_age_us][,learnt], is {:?}",
                 names.join(",")
             );
-            return Err(InputError::at_line(file, 1, rule));
+            return Err(account.at_line(1, rule));
         };
         let mut header = columns.header();
         header.extend((known.len() < names.len()).then_some(LEARNT));
         Ok(Self {
-            file: file.to_owned(),
+            account: account.clone(),
             records,
-            meter: meter.clone(),
             columns,
             header,
-            learnt: Before::default(),
             record: StringRecord::new(),
             begun: false,
         })
@@ -73,15 +62,84 @@ impl<R: Read> Records<R> {
 
     fn read(&mut self) -> Result<Option<Stamped>, InputError> {
         let read = self.records.read_record(&mut self.record);
-        if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
+        if !read.map_err(|error| self.account.csv_error(&error))? {
             self.check_end()?;
             return Ok(None);
         }
-        let row = parse(&self.file, &self.record, self.columns, &self.header)?;
+        let row = self.parse()?;
         if self.header.last() == Some(&LEARNT) {
             self.learn()?;
         }
         Ok(Some(row))
+    }
+
+    fn line(&self) -> u64 {
+        self.record.position().map_or(1, csv::Position::line)
+    }
+
+    fn parse(&self) -> Result<Stamped, InputError> {
+        let (record, header, columns) = (&self.record, &self.header, &self.columns);
+        let line = self.line();
+        let fail = |rule: String| self.account.at_line(line, rule);
+        let (needed, there) = (header.len(), record.len());
+        if there != needed {
+            let rule = format!("a row needs {needed} fields, this one has {there}");
+            return Err(fail(rule));
+        }
+        let no_time = || {
+            fail(format!(
+                "time_s must be a finite number, is {:?}",
+                &record[0]
+            ))
+        };
+        let stamp = Stamp::parse(&record[0]).ok_or_else(no_time)?;
+        let broken = |(name, text): (&str, &str), rule: &str| {
+            fail(format!("{name} must be {rule}, is {text:?}"))
+        };
+        let number = |(name, text): (&str, &str)| match text.parse::<f64>() {
+            _ if is_missing(text) => Ok(f64::NAN),
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(broken((name, text), "a finite number, empty or NaN")),
+        };
+        let mut fields = header.iter().copied().zip(record).skip(1);
+        // There are as many as the columns want.
+        let mut next = || fields.next().unwrap_or_default();
+        let mut positions = [f64::NAN; CHANNELS];
+        for position in &mut positions[..2 * usize::from(columns.planes)] {
+            *position = MICRO * number(next())?;
+        }
+        let spin = columns.speed.then(|| number(next())).transpose()?;
+        let levitated = match columns.levitated.then(&mut next) {
+            Some((_, "0")) => Some(false),
+            Some((_, "1")) => Some(true),
+            Some(field) if !is_missing(field.1) => {
+                return Err(broken(field, "0, 1, empty or NaN"));
+            }
+            _ => None,
+        };
+        let mut edges = [None; TACHOMETERS];
+        for (pulses, _) in (edges.iter_mut().zip(columns.edges)).filter(|(_, there)| *there) {
+            let (counted, aged) = (next(), next());
+            let (count, age) = (number(counted)?, MICRO * number(aged)?);
+            if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
+                let rule = "a whole number from 0 to 2^53, empty or NaN";
+                return Err(broken(counted, rule));
+            }
+            if age < 0.0 {
+                return Err(broken(aged, "0 or more"));
+            }
+            let is_known = !count.is_nan() && !age.is_nan();
+            let count = count as u64;
+            *pulses = is_known.then_some(Pulses { count, age });
+        }
+        let row = Row {
+            time: stamp.time,
+            positions,
+            spin: spin.map(|it| RPM * it).filter(|it| !it.is_nan()),
+            levitated,
+            edges,
+        };
+        Ok(Stamped { stamp, row, line })
     }
 
     /// The last field of a row: only the first one's has something in it.
@@ -91,25 +149,26 @@ impl<R: Read> Records<R> {
         if text.is_empty() {
             return Ok(());
         }
-        let fail = |rule: &str| InputError::at_line(&self.file, line(&self.record), rule);
+        let fail = |rule: &str| self.account.at_line(self.line(), rule);
         if !is_first {
             return Err(fail("learnt has a value in the first row only"));
         }
         let learnt = of_field(text);
         let rule = "learnt is not what `touchdown log export` of this version writes";
-        *self.learnt.borrow_mut() = Some(Box::new(learnt.ok_or_else(|| fail(rule))?));
+        let learnt = Box::new(learnt.ok_or_else(|| fail(rule))?);
+        self.account.learnt.replace(Some(learnt));
         Ok(())
     }
 
     /// A number that lost its last digits is still a number: only the newline shows that the last
     /// row is whole.
     fn check_end(&self) -> Result<(), InputError> {
-        if self.meter.ends_in(b"\n") {
+        if self.account.ends_in(b"\n") {
             return Ok(());
         }
         let last = self.records.position().line();
         let rule = "the last line is cut off: it does not end with a newline";
-        Err(InputError::at_line(&self.file, last, rule))
+        Err(self.account.at_line(last, rule))
     }
 }
 
@@ -121,100 +180,7 @@ impl<R: Read> Iterator for Records<R> {
     }
 }
 
-fn line(record: &StringRecord) -> u64 {
-    record.position().map_or(1, csv::Position::line)
-}
-
-/// What the csv library has to say of `file`, read through `meter`.
-pub fn csv_error(file: &str, error: &csv::Error, meter: &Meter) -> InputError {
-    let line = error.position().map(csv::Position::line);
-    match (error.kind(), line) {
-        (csv::ErrorKind::Utf8 { .. }, Some(line)) => {
-            InputError::at_line(file, line, "the text is not UTF-8")
-        }
-        (csv::ErrorKind::Io(error), _) if meter.is_too_long() => {
-            InputError::at_line(file, meter.line(), error.to_string())
-        }
-        (csv::ErrorKind::Io(error), _) => InputError::of_file(file, reason(error)),
-        (_, Some(line)) => InputError::at_line(file, line, error.to_string()),
-        (_, None) => InputError::of_file(file, error.to_string()),
-    }
-}
-
 /// Whether a field says that there is no value.
 pub fn is_missing(field: &str) -> bool {
     field.is_empty() || field.eq_ignore_ascii_case("nan")
-}
-
-fn parse(
-    file: &str,
-    record: &StringRecord,
-    columns: Columns,
-    header: &[&str],
-) -> Result<Stamped, InputError> {
-    let fail = |rule: String| InputError::at_line(file, line(record), rule);
-    if record.len() != header.len() {
-        return Err(fail(format!(
-            "a row needs {} fields, this one has {}",
-            header.len(),
-            record.len()
-        )));
-    }
-    let stamp = Stamp::parse(&record[0]).ok_or_else(|| {
-        fail(format!(
-            "time_s must be a finite number, is {:?}",
-            &record[0]
-        ))
-    })?;
-    let number = |(name, text): (&str, &str)| match text.parse::<f64>() {
-        _ if is_missing(text) => Ok(f64::NAN),
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(fail(format!(
-            "{name} must be a finite number, empty or NaN, is {text:?}"
-        ))),
-    };
-    let mut fields = header.iter().copied().zip(record).skip(1);
-    // There are as many as the columns want.
-    let mut next = || fields.next().unwrap_or_default();
-    let mut positions = [f64::NAN; CHANNELS];
-    for position in &mut positions[..2 * usize::from(columns.planes)] {
-        *position = MICRO * number(next())?;
-    }
-    let spin = columns.speed.then(|| number(next())).transpose()?;
-    let levitated = match columns.levitated.then(|| next().1) {
-        Some("0") => Some(false),
-        Some("1") => Some(true),
-        Some(other) if !is_missing(other) => {
-            let rule = "must be 0, 1, empty or NaN";
-            return Err(fail(format!("levitated {rule}, is {other:?}")));
-        }
-        _ => None,
-    };
-    let mut edges = [None; TACHOMETERS];
-    for (pulses, _) in (edges.iter_mut().zip(columns.edges)).filter(|(_, there)| *there) {
-        let (counted, aged) = (next(), next());
-        let (count, age) = (number(counted)?, MICRO * number(aged)?);
-        if !(count.is_nan() || (0.0..=MOST_EDGES).contains(&count) && count.fract() == 0.0) {
-            let (name, text) = counted;
-            let rule = "must be a whole number from 0 to 2^53, empty or NaN";
-            return Err(fail(format!("{name} {rule}, is {text:?}")));
-        }
-        if age < 0.0 {
-            let (name, text) = aged;
-            return Err(fail(format!("{name} must be 0 or more, is {text:?}")));
-        }
-        *pulses = (!count.is_nan() && !age.is_nan()).then_some(Pulses {
-            count: count as u64,
-            age,
-        });
-    }
-    let row = Row {
-        time: stamp.time,
-        positions,
-        spin: spin.map(|it| RPM * it).filter(|it| !it.is_nan()),
-        levitated,
-        edges,
-    };
-    let line = line(record);
-    Ok(Stamped { stamp, row, line })
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::clock::round;
 use super::row::{RATES, Stamped};
 use touchdown_base::input_error::InputError;
 
@@ -49,11 +50,8 @@ impl Lines {
 impl fmt::Display for Lines {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<_> = self.first.iter().map(u64::to_string).collect();
-        let more = if self.count > NAMED as u64 {
-            ", ..."
-        } else {
-            ""
-        };
+        let is_more = self.count > NAMED as u64;
+        let more = if is_more { ", ..." } else { "" };
         let word = if self.count == 1 { "line" } else { "lines" };
         write!(f, "{word} {}{more}", lines.join(", "))
     }
@@ -61,12 +59,9 @@ impl fmt::Display for Lines {
 
 /// Median of the intervals between `times` (s) that go forward; infinite where there is none.
 pub fn median_interval(first: f64, times: impl Iterator<Item = f64>) -> f64 {
-    let mut intervals: Vec<f64> = times
-        .scan(first, |last, time| {
-            Some(time - std::mem::replace(last, time))
-        })
-        .filter(|interval| *interval > 0.0)
-        .collect();
+    let mut last = first;
+    let intervals = times.map(|time| time - std::mem::replace(&mut last, time));
+    let mut intervals: Vec<f64> = intervals.filter(|it| *it > 0.0).collect();
     let middle = intervals.len() / 2;
     if intervals.is_empty() {
         return f64::INFINITY;
@@ -116,9 +111,8 @@ impl Survey {
     /// The rate of most intervals, as near as a round number is, Hz.
     fn rate(&self) -> f64 {
         let rate = 1.0 / self.period;
-        let units = [1e4, 1e3, 1e2, 1e1, 1.0];
-        let round = units.map(|unit| (rate / unit).round() * unit);
-        let near = round.into_iter().find(|it| (it / rate - 1.0).abs() < 0.01);
+        let mut round = round(rate).into_iter();
+        let near = round.find(|it| (it / rate - 1.0).abs() < 0.01);
         near.unwrap_or(rate).clamp(*RATES.start(), *RATES.end())
     }
 }
@@ -129,31 +123,22 @@ impl fmt::Display for Survey {
         let usual = self.intervals - self.gaps.count - self.back.count;
         let jitter = (self.squares / usual.max(1) as f64).sqrt() / self.period;
         let rows = if self.cut { "first rows" } else { "rows" };
+        let (count, middle) = (self.intervals + 1, 1.0 / self.period);
+        let (shortest, longest, jitter) = (self.shortest, self.longest, 100.0 * jitter);
         write!(
             f,
-            "found in its {} {rows}: {mean:.6} Hz on average, {:.6} Hz in the middle, intervals of {:.3e} \
-             to {:.3e} s, jitter {:.2} %",
-            self.intervals + 1,
-            1.0 / self.period,
-            self.shortest,
-            self.longest,
-            100.0 * jitter
+            "found in its {count} {rows}: {mean:.6} Hz on average, {middle:.6} Hz in the middle, intervals of \
+             {shortest:.3e} to {longest:.3e} s, jitter {jitter:.2} %"
         )?;
         if self.gaps.count > 0 {
             let word = if self.gaps.count == 1 { "gap" } else { "gaps" };
             write!(f, ", {} {word} ({})", self.gaps.count, self.gaps)?;
         }
         if self.back.count > 0 {
-            write!(
-                f,
-                ", {} times not later than the one before ({})",
-                self.back.count, self.back
-            )?;
-            return write!(
-                f,
-                "; a file whose stamps are coarser than its rate needs the rate itself: rate_hz in the \
-                 [time] of --columns"
-            );
+            let (count, lines) = (self.back.count, &self.back);
+            write!(f, ", {count} times not later than the one before ({lines})")?;
+            let rule = "a file whose stamps are coarser than its rate needs the rate itself";
+            return write!(f, "; {rule}: rate_hz in the [time] of --columns");
         }
         write!(f, "; --resample {} makes it even and says so", self.rate())
     }

@@ -15,16 +15,14 @@ pub const STATION: &str = "touchdown";
 /// Beginning of the device of an episode.
 pub const DEVICE: &str = "episode ";
 
-/// The configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cfg {
     /// Of the standard.
     pub year: u16,
     /// Whether it is the export of an episode: along the channels' axes, with zero and gain of a commissioning check.
     pub is_episode: bool,
-    /// In the order of the data.
+    /// In the order of the data, as the digital ones.
     pub analog: Vec<Analog>,
-    /// In the order of the data.
     pub digital: Vec<Heading>,
     /// Each rate (Hz) and the number of its last sample; none where the stamps alone tell.
     pub rates: Vec<(f64, u64)>,
@@ -32,7 +30,6 @@ pub struct Cfg {
     pub samples: u64,
     /// First sample before the trigger, s; `None` where the dates cannot be read.
     pub start: Option<f64>,
-    /// How the data are written.
     pub data: Data,
     /// Of one unit of a stamp, s.
     pub tick: f64,
@@ -56,13 +53,10 @@ pub struct Analog {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "UPPERCASE", ascii_case_insensitive)]
 pub enum Data {
-    /// Numbers with commas.
     Ascii,
-    /// 16 bit.
+    /// Whole numbers of 16 bit.
     Binary,
-    /// 32 bit.
     Binary32,
-    /// IEEE 754, 32 bit.
     Float32,
 }
 
@@ -70,6 +64,8 @@ pub enum Data {
 struct Lines<'a> {
     lines: std::str::Lines<'a>,
     number: u64,
+    /// Of the line that was read last.
+    fields: Vec<&'a str>,
 }
 
 type Diagnostic = (u64, String);
@@ -82,37 +78,44 @@ fn shown(text: &str) -> &str {
 }
 
 impl<'a> Lines<'a> {
+    /// Goes on to the next line, that of `what`.
     fn next(&mut self, what: &str) -> Result<&'a str, Diagnostic> {
         self.number += 1;
-        let line = self.lines.next();
-        line.ok_or_else(|| {
-            (
-                self.number,
-                format!("the file ends before the line of {what}"),
-            )
-        })
+        let Some(line) = self.lines.next() else {
+            return self.fail(format!("the file ends before the line of {what}"));
+        };
+        self.fields = line.split(',').map(str::trim).collect();
+        Ok(line)
     }
 
-    fn fields(&mut self, what: &str) -> Result<Vec<&'a str>, Diagnostic> {
-        Ok(self.next(what)?.split(',').map(str::trim).collect())
+    fn fail<T>(&self, rule: impl Into<String>) -> Result<T, Diagnostic> {
+        Err((self.number, rule.into()))
     }
 
-    fn fail<T>(&self, rule: String) -> Result<T, Diagnostic> {
-        Err((self.number, rule))
+    /// A field of the line, empty where there is none.
+    fn text(&self, at: usize) -> &'a str {
+        self.fields.get(at).copied().unwrap_or("")
     }
 
-    fn number<T: FromStr>(&self, fields: &[&str], at: usize, what: &str) -> Result<T, Diagnostic> {
-        let text = fields.get(at).copied().unwrap_or("");
+    fn number<T: FromStr>(&self, at: usize, what: &str) -> Result<T, Diagnostic> {
+        let text = self.text(at);
         let number = text.parse();
         number.or_else(|_| self.fail(format!("{what} must be a number, is {:?}", shown(text))))
     }
 
-    fn finite(&self, fields: &[&str], at: usize, what: &str) -> Result<f64, Diagnostic> {
-        let number: f64 = self.number(fields, at, what)?;
-        if number.is_finite() {
-            return Ok(number);
+    fn finite(&self, at: usize, what: &str) -> Result<f64, Diagnostic> {
+        match self.number(at, what)? {
+            number if f64::is_finite(number) => Ok(number),
+            number => self.fail(format!("{what} must be finite, is {number}")),
         }
-        self.fail(format!("{what} must be finite, is {number}"))
+    }
+
+    /// Likewise; `other` where the field is empty.
+    fn finite_or(&self, other: f64, at: usize, what: &str) -> Result<f64, Diagnostic> {
+        match self.text(at) {
+            "" => Ok(other),
+            _ => self.finite(at, what),
+        }
     }
 }
 
@@ -122,48 +125,48 @@ impl Cfg {
         let mut lines = Lines {
             lines: text.lines(),
             number: 0,
+            fields: Vec::new(),
         };
-        let first = lines.fields("station and device")?;
-        let year = match first.get(2).copied().unwrap_or("") {
+        lines.next("station and device")?;
+        let is_episode = lines.text(0) == STATION && lines.text(1).starts_with(DEVICE);
+        let year = match lines.text(2) {
             "" => 1991,
-            _ => lines.number(&first, 2, "the year of the standard")?,
+            _ => lines.number(2, "the year of the standard")?,
         };
         let (analogs, digitals) = counts(&mut lines)?;
-        let analog = (0..analogs)
-            .map(|_| analog(&mut lines))
-            .collect::<Result<_, _>>()?;
+        let analog = (0..analogs).map(|_| analog(&mut lines));
+        let analog = analog.collect::<Result<_, _>>()?;
         let digital = (0..digitals).map(|_| {
-            let fields = lines.fields("a digital channel")?;
-            Ok(heading(&fields, None))
+            lines.next("a digital channel")?;
+            Ok(heading(&lines, ""))
         });
         let digital = digital.collect::<Result<_, Diagnostic>>()?;
         lines.next("the line frequency")?;
         let (rates, samples) = rates(&mut lines)?;
-        let first_sample = lines.fields("the first sample's time")?;
-        let trigger = lines.fields("the trigger's time")?;
+        lines.next("the first sample's time")?;
+        let (date, time) = (lines.text(0), lines.text(1));
+        let (begin, digits) = (instant(date, time, year), decimals(time));
+        lines.next("the trigger's time")?;
+        let instants = begin.zip(instant(lines.text(0), lines.text(1), year));
         let kind = lines.next("the kind of the data file")?;
         let Ok(data) = kind.trim().parse() else {
             let rule = "must be ASCII, BINARY, BINARY32 or FLOAT32";
             return lines.fail(format!("the kind of the data file {rule}, is {kind:?}"));
         };
-        let multiple = match lines.fields("the factor of the stamps") {
-            Ok(fields) if year > 1991 => match fields[0] {
-                "" => 1.0,
-                _ => lines.finite(&fields, 0, "the factor of the stamps")?,
-            },
+        let factor = "the factor of the stamps";
+        let multiple = match lines.next(factor) {
+            Ok(_) if year > 1991 => lines.finite_or(1.0, 0, factor)?,
             _ => 1.0,
         };
         if multiple <= 0.0 {
-            return lines.fail("the factor of the stamps must be above 0".to_owned());
+            return lines.fail(format!("{factor} must be above 0"));
         }
         // Since 2013 stamps count nanoseconds where the dates do.
-        let nano = year >= 2013 && decimals(&first_sample) > 6;
-        let instants = instant(&first_sample, year).zip(instant(&trigger, year));
+        let nano = year >= 2013 && digits > 6;
         let start = instants.map(|(begin, trigger)| (begin - trigger).as_seconds_f64());
         Ok(Self {
             year,
-            is_episode: first[0] == STATION
-                && first.get(1).is_some_and(|it| it.starts_with(DEVICE)),
+            is_episode,
             analog,
             digital,
             rates,
@@ -206,21 +209,22 @@ impl Cfg {
 
 /// Numbers of analog and of digital channels.
 fn counts(lines: &mut Lines) -> Result<(usize, usize), Diagnostic> {
-    let fields = lines.fields("the numbers of channels")?;
+    lines.next("the numbers of channels")?;
     let count = |at: usize, letter: char| -> Option<usize> {
-        let text = fields.get(at)?.to_ascii_uppercase();
+        let text = lines.text(at).to_ascii_uppercase();
         text.strip_suffix(letter)?.parse().ok()
     };
     let (Some(analogs), Some(digitals)) = (count(1, 'A'), count(2, 'D')) else {
+        let (all, rule) = (lines.fields.join(","), "must be as 4,3A,1D");
         return lines.fail(format!(
-            "the numbers of channels must be as 4,3A,1D, are {:?}",
-            shown(&fields.join(","))
+            "the numbers of channels {rule}, are {:?}",
+            shown(&all)
         ));
     };
     if analogs > MOST_CHANNELS || digitals > MOST_CHANNELS {
         return lines.fail(format!("there are more than {MOST_CHANNELS} channels"));
     }
-    let total: usize = lines.number(&fields, 0, "the number of channels")?;
+    let total: usize = lines.number(0, "the number of channels")?;
     if total != analogs + digitals {
         return lines.fail(format!("{total} channels are not {analogs} and {digitals}"));
     }
@@ -228,42 +232,38 @@ fn counts(lines: &mut Lines) -> Result<(usize, usize), Diagnostic> {
 }
 
 fn analog(lines: &mut Lines) -> Result<Analog, Diagnostic> {
-    let fields = lines.fields("an analog channel")?;
-    let or_zero = |at: usize, what: &str| match fields.get(at).copied().unwrap_or("") {
-        "" => Ok(0.0),
-        _ => lines.finite(&fields, at, what),
-    };
+    lines.next("an analog channel")?;
     Ok(Analog {
-        heading: heading(&fields, fields.get(4)),
-        scale: lines.finite(&fields, 5, "the factor a of a channel")?,
-        shift: lines.finite(&fields, 6, "the offset b of a channel")?,
-        skew: or_zero(7, "the skew of a channel")?,
-        most: or_zero(9, "the largest count of a channel")?,
+        heading: heading(lines, lines.text(4)),
+        scale: lines.finite(5, "the factor a of a channel")?,
+        shift: lines.finite(6, "the offset b of a channel")?,
+        skew: lines.finite_or(0.0, 7, "the skew of a channel")?,
+        most: lines.finite_or(0.0, 9, "the largest count of a channel")?,
     })
 }
 
 /// Of a channel; the unit as it is written.
-fn heading(fields: &[&str], unit: Option<&&str>) -> Heading {
+fn heading(lines: &Lines, unit: &str) -> Heading {
     Heading {
-        text: fields.get(1).copied().unwrap_or("").to_owned(),
-        unit: unit.filter(|it| !it.is_empty()).map(|it| (*it).to_owned()),
+        text: lines.text(1).to_owned(),
+        unit: (!unit.is_empty()).then(|| unit.to_owned()),
     }
 }
 
 /// Rates with their last samples, and samples in all.
 fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Diagnostic> {
-    let fields = lines.fields("the number of rates")?;
-    let count: usize = lines.number(&fields, 0, "the number of rates")?;
+    lines.next("the number of rates")?;
+    let count: usize = lines.number(0, "the number of rates")?;
     if count > MOST_RATES {
         return lines.fail(format!("there are more than {MOST_RATES} rates"));
     }
     let (mut rates, mut samples) = (Vec::new(), 0);
     for _ in 0..count.max(1) {
-        let fields = lines.fields("a rate")?;
-        let rate = lines.finite(&fields, 0, "a rate")?;
-        let last: u64 = lines.number(&fields, 1, "the last sample of a rate")?;
+        lines.next("a rate")?;
+        let rate = lines.finite(0, "a rate")?;
+        let last: u64 = lines.number(1, "the last sample of a rate")?;
         if rate < 0.0 || last <= samples {
-            return lines.fail("a rate must be 0 or more, and the samples must go up".to_owned());
+            return lines.fail("a rate must be 0 or more, and the samples must go up");
         }
         samples = last;
         rates.push((rate, last));
@@ -275,8 +275,7 @@ fn rates(lines: &mut Lines) -> Result<(Vec<(f64, u64)>, u64), Diagnostic> {
 }
 
 /// `dd/mm/yyyy` and `hh:mm:ss.ssssss`; in 1991 the month came first, and the year may have two digits.
-fn instant(fields: &[&str], standard: u16) -> Option<NaiveDateTime> {
-    let (date, time) = (fields.first()?, fields.get(1)?);
+fn instant(date: &str, time: &str, standard: u16) -> Option<NaiveDateTime> {
     let order = if standard > 1991 { "%d/%m" } else { "%m/%d" };
     let format = format!("{order}/%Y %H:%M:%S%.f");
     let read = NaiveDateTime::parse_from_str(&format!("{date} {time}"), &format).ok()?;
@@ -287,9 +286,8 @@ fn instant(fields: &[&str], standard: u16) -> Option<NaiveDateTime> {
 }
 
 /// Digits of the seconds' fraction.
-fn decimals(fields: &[&str]) -> usize {
-    let fraction = fields.get(1).and_then(|time| time.split_once('.'));
-    fraction.map_or(0, |(_, digits)| digits.len())
+fn decimals(time: &str) -> usize {
+    time.split_once('.').map_or(0, |(_, digits)| digits.len())
 }
 
 #[cfg(test)]
@@ -299,7 +297,7 @@ mod tests {
     #[test]
     fn days_count_from_1970() {
         let days = |date: &str, standard| {
-            let read = instant(&[date, "00:00:00"], standard)?;
+            let read = instant(date, "00:00:00", standard)?;
             Some(read.and_utc().timestamp() / 86_400)
         };
         assert_eq!(days("01/01/1970", 1999), Some(0));
@@ -311,7 +309,7 @@ mod tests {
 
     #[test]
     fn times_of_day_have_up_to_nine_decimals() {
-        let at = |time: &str| instant(&["01/01/2024", time], 2013);
+        let at = |time: &str| instant("01/01/2024", time, 2013);
         let since = |time: &str| Some((at(time)? - at("0:00:00")?).as_seconds_f64());
         assert_eq!(since("12:34:56.123456789"), Some(45_296.123_456_789));
         assert_eq!(since("1:02:03"), Some(3_723.0));

@@ -5,7 +5,7 @@ use std::io::Read;
 use csv::ByteRecord;
 
 use super::cfg::{Cfg, Data};
-use crate::stream::{Bounded, Meter, csv_error};
+use crate::stream::{Account, Bounded};
 use touchdown_base::input_error::{InputError, reason};
 
 /// End of a text, as DOS has it.
@@ -15,60 +15,48 @@ const MISSING: [f64; 2] = [99_999.0, 999_999.0];
 /// Stamp that stands for none.
 const NO_STAMP: u32 = u32::MAX;
 
-/// A sample: its number, its stamp in ticks, and its values, which are with the reader.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// From 1.
-    pub number: u64,
-    /// Ticks; `None` where there is none.
-    pub stamp: Option<f64>,
-}
+/// Number of a sample, from 1, and its stamp in ticks, where it has one. Its values are with the reader.
+type Sample = (u64, Option<f64>);
 
-/// Reads samples.
-pub struct Dat<R> {
-    pub file: String,
+pub struct Dat {
+    pub account: Account,
     pub cfg: Cfg,
-    source: Source<R>,
-    meter: Meter,
+    source: Source,
     /// Of the sample that was read last: analog in their units, then digital 0 or 1; NaN where there is none.
     pub values: Vec<f64>,
     /// Records so far.
     pub records: u64,
 }
 
-enum Source<R> {
-    Text(Box<csv::Reader<Bounded<R>>>, ByteRecord),
-    Binary(R, Vec<u8>),
+enum Source {
+    Text(Box<csv::Reader<Bounded<Box<dyn Read>>>>, ByteRecord),
+    Binary(Box<dyn Read>, Vec<u8>),
 }
 
-impl<R: Read> Dat<R> {
-    /// Reads `bytes`, of the file `file`, as `cfg` says; `meter` counts them.
-    pub fn new(file: &str, cfg: Cfg, bytes: R, meter: &Meter) -> Self {
+impl Dat {
+    /// Reads `bytes`, of which `account` is, as `cfg` says.
+    pub fn new(cfg: Cfg, bytes: Box<dyn Read>, account: Account) -> Self {
         let source = if cfg.data == Data::Ascii {
-            let bytes = Bounded::new(bytes, meter);
+            let bytes = Bounded::new(bytes, &account);
             let mut reader = csv::ReaderBuilder::new();
-            let reader = reader
-                .has_headers(false)
-                .flexible(true)
-                .trim(csv::Trim::All);
-            let reader = Box::new(reader.from_reader(bytes));
-            Source::Text(reader, ByteRecord::new())
+            reader.has_headers(false).flexible(true);
+            let reader = reader.trim(csv::Trim::All).from_reader(bytes);
+            Source::Text(Box::new(reader), ByteRecord::new())
         } else {
             Source::Binary(bytes, Vec::new())
         };
         Self {
-            file: file.to_owned(),
+            account,
             values: vec![f64::NAN; cfg.analog.len() + cfg.digital.len()],
             cfg,
             source,
-            meter: meter.clone(),
             records: 0,
         }
     }
 
     /// A flaw of the record that was read last.
     pub fn flaw(&self, rule: impl Into<String>) -> InputError {
-        InputError::at_line(&self.file, self.records, rule)
+        self.account.at_line(self.records, rule)
     }
 
     /// The next sample; `None` at the end.
@@ -76,7 +64,7 @@ impl<R: Read> Dat<R> {
         let sample = match &mut self.source {
             Source::Text(reader, record) => {
                 let read = reader.read_byte_record(record);
-                if !read.map_err(|error| csv_error(&self.file, &error, &self.meter))? {
+                if !read.map_err(|error| self.account.csv_error(&error))? {
                     return Ok(None);
                 }
                 if record.len() == 1 && record[0].first() == Some(&END_OF_FILE) {
@@ -89,8 +77,8 @@ impl<R: Read> Dat<R> {
                 let size = self.cfg.bytes();
                 record.clear();
                 let read = bytes.take(size as u64).read_to_end(record);
-                let read = read.map_err(|error| InputError::of_file(&self.file, reason(&error)))?;
-                self.meter.add(read as u64);
+                let read = read.map_err(|error| self.account.of_file(reason(&error)))?;
+                self.account.add(read as u64);
                 if read == 0 {
                     return Ok(None);
                 }
@@ -108,21 +96,16 @@ impl<R: Read> Dat<R> {
 
 fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
     let needed = 2 + values.len();
-    if record.len() != needed {
-        let there = record.len();
-        return Err(format!(
-            "a sample needs {needed} fields, this one has {there}"
-        ));
+    let there = record.len();
+    if there != needed {
+        let rule = format!("a sample needs {needed} fields");
+        return Err(format!("{rule}, this one has {there}"));
     }
     let text = |at: usize| std::str::from_utf8(&record[at]).unwrap_or("?");
-    let number = |at: usize| -> Result<Option<f64>, String> {
-        match text(at) {
-            "" => Ok(None),
-            it => match it.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(Some(value)),
-                _ => Err(format!("field {} must be a number, is {it:?}", at + 1)),
-            },
-        }
+    let number = |at: usize| match (text(at), text(at).parse::<f64>()) {
+        ("", _) => Ok(None),
+        (_, Ok(value)) if value.is_finite() => Ok(Some(value)),
+        (it, _) => Err(format!("field {} must be a number, is {it:?}", at + 1)),
     };
     for (index, value) in values.iter_mut().enumerate() {
         let count = number(2 + index)?;
@@ -134,13 +117,8 @@ fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample,
             None => count.unwrap_or(f64::NAN),
         };
     }
-    let sample = text(0)
-        .parse()
-        .map_err(|_| format!("the sample's number must be whole, is {:?}", text(0)))?;
-    Ok(Sample {
-        number: sample,
-        stamp: number(1)?,
-    })
+    let whole = |_| format!("the sample's number must be whole, is {:?}", text(0));
+    Ok((text(0).parse().map_err(whole)?, number(1)?))
 }
 
 fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
@@ -175,8 +153,6 @@ fn of_bytes(record: &[u8], cfg: &Cfg, values: &mut [f64]) -> Result<Sample, Stri
         let word = u16::from_le_bytes([word[0], word[1]]);
         *value = f64::from(word >> (index % 16) & 1);
     }
-    Ok(Sample {
-        number: u64::from(number),
-        stamp: (stamp != NO_STAMP).then_some(f64::from(stamp)),
-    })
+    let stamp = (stamp != NO_STAMP).then_some(f64::from(stamp));
+    Ok((number.into(), stamp))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::cfg::Cfg;
 use super::dat::Dat;
 use crate::recording::layout::text_of;
-use crate::stream::Meter;
+use crate::stream::{Account, LONGEST};
 use touchdown_base::input_error::{InputError, reason};
 
 /// Larger than any configuration, bytes.
@@ -28,15 +28,16 @@ fn ends(path: &Path, ending: &str) -> bool {
 }
 
 /// Opens the recording that `path` is one of two files of; also the bytes of its data.
-pub fn open(path: &Path, meter: &Meter) -> Result<(Dat<Box<dyn Read>>, u64), InputError> {
+pub fn open(path: &Path, account: &Account) -> Result<(Dat, u64), InputError> {
     let cfg_path = beside(path, "cfg")?;
     let text = text_of(&InputError::read_bytes(&cfg_path, LARGEST_CFG)?);
-    let cfg = Cfg::parse(&text)
-        .map_err(|(line, rule)| InputError::at_line(&cfg_path.display().to_string(), line, rule))?;
+    let name = cfg_path.display().to_string();
+    let cfg = Cfg::parse(&text).map_err(|(line, rule)| InputError::at_line(&name, line, rule))?;
     let dat_path = beside(path, "dat")?;
     let (file, size) = InputError::open(&dat_path)?;
-    let name = dat_path.display().to_string();
-    Ok((Dat::new(&name, cfg, Box::new(file), meter), size))
+    let mut account = account.clone();
+    account.file = dat_path.display().to_string();
+    Ok((Dat::new(cfg, Box::new(file), account), size))
 }
 
 /// The file of this ending beside `path`, in whichever case it is written.
@@ -47,92 +48,49 @@ fn beside(path: &Path, ending: &str) -> Result<PathBuf, InputError> {
     let endings = [ending.to_owned(), ending.to_ascii_uppercase()];
     let mut paths = endings.iter().map(|it| path.with_extension(it));
     paths.find(|it| it.exists()).ok_or_else(|| {
-        let rule = format!(
-            "there is no .{ending} beside it: a COMTRADE recording has .cfg and .dat, or is a .cff"
-        );
+        let rule = "a COMTRADE recording has .cfg and .dat, or is a .cff";
+        let rule = format!("there is no .{ending} beside it: {rule}");
         InputError::of_file(&path.display().to_string(), rule)
     })
 }
 
 /// A recording in one file: sections begin with lines as `--- file type: CFG ---`.
-pub fn combined(
-    name: &str,
-    bytes: Box<dyn BufRead>,
-    meter: &Meter,
-) -> Result<Dat<Box<dyn Read>>, InputError> {
-    let mut lines = Sections {
-        name,
-        bytes,
-        line: 0,
-    };
-    let (mut cfg, mut at) = (None, 0);
-    let mut section = lines.skip_to_section()?;
+pub fn combined(mut bytes: Box<dyn BufRead>, account: &Account) -> Result<Dat, InputError> {
+    // The line before the configuration, and its text as far as it goes.
+    let mut cfg: Option<(u64, String)> = None;
+    let (mut in_cfg, mut number) = (false, 0);
     loop {
-        let Some(kind) = section else {
-            let rule = "has no section \"--- file type: DAT ... ---\" after one of CFG";
-            return Err(InputError::of_file(name, rule));
-        };
-        if kind == "CFG" {
-            at = lines.line;
-            let (text, next) = lines.text()?;
-            cfg = Some(text);
-            section = next;
-        } else if let (true, Some(text)) = (kind.starts_with("DAT"), &cfg) {
-            let cfg = Cfg::parse(text)
-                .map_err(|(line, rule)| InputError::at_line(name, at + line, rule))?;
-            let told = kind["DAT".len()..].split(':').next().unwrap_or("").trim();
-            if told.parse() != Ok(cfg.data) {
-                let rule =
-                    format!("the section's data are {told:?}, those of the configuration are not");
-                return Err(InputError::at_line(name, lines.line, rule));
-            }
-            return Ok(Dat::new(name, cfg, Box::new(lines.bytes), meter));
-        } else {
-            section = lines.skip_to_section()?;
-        }
-    }
-}
-
-struct Sections<'a> {
-    name: &'a str,
-    bytes: Box<dyn BufRead>,
-    line: u64,
-}
-
-impl Sections<'_> {
-    /// The next line, or as much of it as is believed; `None` at the end.
-    fn next(&mut self) -> Result<Option<String>, InputError> {
+        // As much of it as is believed.
         let mut line = Vec::new();
-        let mut some = (&mut self.bytes).take(crate::stream::LONGEST);
-        let read = some.read_until(b'\n', &mut line);
-        let read = read.map_err(|error| InputError::of_file(self.name, reason(&error)))?;
-        self.line += u64::from(line.ends_with(b"\n"));
-        Ok((read > 0).then(|| text_of(&line)))
-    }
-
-    fn skip_to_section(&mut self) -> Result<Option<String>, InputError> {
-        while let Some(line) = self.next()? {
-            if let Some(kind) = section(&line) {
-                return Ok(Some(kind));
-            }
+        let read = (&mut bytes).take(LONGEST).read_until(b'\n', &mut line);
+        if read.map_err(|error| account.of_file(reason(&error)))? == 0 {
+            let rule = "has no section \"--- file type: DAT ... ---\" after one of CFG";
+            return Err(account.of_file(rule));
         }
-        Ok(None)
-    }
-
-    /// The lines up to the next section, and its kind.
-    fn text(&mut self) -> Result<(String, Option<String>), InputError> {
-        let mut text = String::new();
-        while let Some(line) = self.next()? {
-            if let Some(kind) = section(&line) {
-                return Ok((text, Some(kind)));
+        number += u64::from(line.ends_with(b"\n"));
+        let line = text_of(&line);
+        let Some(kind) = section(&line) else {
+            if let Some((_, text)) = cfg.as_mut().filter(|_| in_cfg) {
+                *text += &line;
+                if text.len() as u64 > LARGEST_CFG {
+                    return Err(account.at_line(number, "the configuration is larger than any"));
+                }
             }
-            text += &line;
-            if text.len() as u64 > LARGEST_CFG {
-                let rule = "the configuration is larger than any";
-                return Err(InputError::at_line(self.name, self.line, rule));
+            continue;
+        };
+        in_cfg = kind == "CFG";
+        if in_cfg {
+            cfg = Some((number, String::new()));
+        } else if let (Some(data), Some((at, text))) = (kind.strip_prefix("DAT"), &cfg) {
+            let cfg = Cfg::parse(text).map_err(|(line, rule)| account.at_line(at + line, rule))?;
+            let told = data.split(':').next().unwrap_or("").trim();
+            if told.parse() != Ok(cfg.data) {
+                let rule = "those of the configuration are not";
+                let rule = format!("the section's data are {told:?}, {rule}");
+                return Err(account.at_line(number, rule));
             }
+            return Ok(Dat::new(cfg, bytes, account.clone()));
         }
-        Ok((text, None))
     }
 }
 
