@@ -13,9 +13,9 @@
 // Coordinates and rings are counted alike in several arrays.
 #![allow(clippy::needless_range_loop)]
 
+mod beyond;
 mod compliant;
 mod config;
-mod crossing;
 mod energy;
 mod follow;
 mod limit;

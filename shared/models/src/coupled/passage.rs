@@ -6,13 +6,12 @@
 
 use super::compliant::Compliant;
 use super::config::MAGNETS;
-use super::links::{Grip, Link, Links};
+use super::links::{Grip, Link, Links, contact, stop};
 use super::mount::{Ride, Rub};
 use super::race::{Drag, Turning};
 use super::vector::{Mobility, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
-use touchdown_rotor::real::Real;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -114,25 +113,6 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
     /// Friction on the rotor, as an impulse.
     pub(super) fn rub(&self, ring: usize) -> R {
         self.presses[ring].map_or(R::ZERO, |press| R::TWO * press.rubbed / self.time)
-    }
-}
-
-/// Links and whose they are.
-pub(super) struct Walls<R, const N: usize> {
-    pub(super) time: R,
-    pub(super) links: Links<R, N>,
-    pub(super) contacts: [Option<usize>; N],
-    pub(super) stops: [Option<usize>; N],
-}
-
-impl<R: Real, const N: usize> Walls<R, N> {
-    fn new(time: R) -> Self {
-        Self {
-            time,
-            links: Links::new(),
-            contacts: [None; N],
-            stops: [None; N],
-        }
     }
 }
 
@@ -313,19 +293,16 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !(0..N).any(presses) {
             return;
         }
-        let mut walls = Walls::new(passage.time);
-        if !self.solve_walls(state, passage, &mut walls) {
+        let Some(links) = self.solve_walls(state, passage) else {
             passage.solved = false;
             return;
-        }
+        };
         let rate = R::TWO / passage.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
             let ride = &passage.rides[i];
             passage.stopped[i] = ride.rests_on_stop();
-            if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
-                && link.grip != Grip::Open
-            {
+            if let Some(link) = links.pressing(contact(i)) {
                 let push = link.push();
                 passage.presses[i] = Some(Press {
                     pressed: link.pressed,
@@ -339,9 +316,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 passage.pushed[i][0] = ride.pushed(Vector::default() - push);
                 passage.spun += rate * ring.surface * link.rubbed / self.inertia_ratio;
             }
-            if let Some(link) = walls.stops[i].and_then(|it| walls.links.get(it))
-                && link.grip != Grip::Open
-            {
+            if let Some(link) = links.pressing(stop(i)) {
                 passage.pushed[i][1] = ride.pushed(link.push());
                 passage.stopped[i] = state.is_stopped(i);
             }
@@ -355,26 +330,25 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Adds and solves all walls of a passage, without friction where they jam with it; false where nothing was found.
+    /// All walls of a passage, solved, without friction where they jam with it; none where nothing was found.
     fn solve_walls(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &mut Passage<R, N, Q>,
-        walls: &mut Walls<R, N>,
-    ) -> bool {
-        self.add_walls(state, passage, walls);
-        let settles = self.settle(state, walls);
-        passage.systems += walls.links.systems;
-        passage.rubs = settles && !self.gains(state, walls, passage.time);
-        if passage.rubs {
-            return true;
+    ) -> Option<Links<R, N>> {
+        for rubs in [true, false] {
+            let mut links = self.walls(state, passage);
+            if !rubs {
+                links.smooth();
+            }
+            let settles = self.settle(state, &mut links, passage.time);
+            passage.systems += links.systems;
+            passage.rubs = rubs && settles && !self.gains(state, &links, passage.time);
+            if passage.rubs || (!rubs && settles) {
+                return Some(links);
+            }
         }
-        *walls = Walls::new(passage.time);
-        self.add_walls(state, passage, walls);
-        walls.links.smooth();
-        let settles = self.settle(state, walls);
-        passage.systems += walls.links.systems;
-        settles
+        None
     }
 
     /// The stop that gives way of a ring that dry friction does not hold.
@@ -397,7 +371,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// The wall of a ring that the rotor is held by; `turning` is the speed of the inner ring.
-    fn contact(
+    fn held_wall(
         &self,
         state: &CoupledState<R, N, Q>,
         free: &Passage<R, N, Q>,
@@ -405,8 +379,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         turning: R,
     ) -> Option<Link<R>> {
         let (ring, held) = (&self.rings[i], state.seats[i].held.as_ref()?);
-        let place = self.within(state, i);
-        let normal = place.times(R::ONE / place.length());
+        let normal = self.within(state, i).unit();
         let slip = normal.cross(self.relative(state, i)) + self.surface(state, i);
         let moved = at(&ring.shape, &free.moved) - free.rides[i].moved;
         let mut link = Link::new(normal, moved);
@@ -440,79 +413,88 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         compliant.linearize(link, Some(soft), (from, time), moved)
     }
 
-    /// Adds the walls that hold at the start, with what moves in them.
-    fn add_walls(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        free: &Passage<R, N, Q>,
-        walls: &mut Walls<R, N>,
-    ) {
+    /// The walls that hold at the start, with what moves in them.
+    fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Links<R, N> {
+        let mut links = Links::new();
         let mut turnings = [Turning::default(); N];
         for (i, ring) in self.rings.iter().enumerate() {
             if let Some(race) = &ring.race {
                 turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
             }
-            if let Some(mut link) = self.contact(state, free, i, turnings[i].free) {
+            if let Some(mut link) = self.held_wall(state, free, i, turnings[i].free) {
                 let moved = link.free;
                 self.linearize(state, i, free.time, &mut link, moved);
-                walls.contacts[i] = Some(walls.links.add(link));
+                links.put(contact(i), link);
             }
             let soft = self.near_stop(state, free, i);
             if soft.is_some() || (state.is_stopped(i) && !free.rides[i].rests()) {
                 let place = state.ring_place(i);
-                let normal = place.times(R::ONE / place.length());
-                let mut link = Link::new(normal, free.rides[i].moved);
-                if let Some(stop) = soft {
+                let mut link = Link::new(place.unit(), free.rides[i].moved);
+                if let Some(soft) = soft {
                     let moved = link.free;
-                    stop.linearize(&mut link, None, (place, free.time), moved);
+                    soft.linearize(&mut link, None, (place, free.time), moved);
                 }
-                walls.stops[i] = Some(walls.links.add(link));
+                links.put(stop(i), link);
             }
         }
+        let moved = |i: usize, j: usize| {
+            let (to, from) = (&self.rings[i].shape, &self.rings[j].shape);
+            let all = to.iter().zip(&free.inverse);
+            all.fold(Vector::default(), |sum, (b, row)| {
+                sum + at(from, row).times(*b)
+            })
+        };
+        let own = |i: usize| {
+            (
+                Mobility::along(free.rides[i].mobility),
+                turnings[i].mobility,
+            )
+        };
+        self.respond(&mut links, moved, own);
+        links
+    }
+
+    /// Tells links of what their impulses move: the rotor in one ring by another, and each ring and inner ring by its own.
+    pub(super) fn respond(
+        &self,
+        links: &mut Links<R, N>,
+        moved: impl Fn(usize, usize) -> Vector<R>,
+        own: impl Fn(usize) -> (Mobility<R>, R),
+    ) {
         for (i, ring) in self.rings.iter().enumerate() {
-            let mobility = Mobility::along(free.rides[i].mobility);
-            let back = mobility.back();
+            let (mobility, turning) = own(i);
             for (j, other) in self.rings.iter().enumerate() {
-                let (Some(to), Some(from)) = (walls.contacts[i], walls.contacts[j]) else {
+                if links.get(contact(i)).and(links.get(contact(j))).is_none() {
                     continue;
+                }
+                let spin = ring.surface * other.surface / self.inertia_ratio;
+                let (motion, spin) = if i == j {
+                    (mobility + moved(i, j), spin + turning)
+                } else {
+                    (Mobility::default() + moved(i, j), spin)
                 };
-                let mut turned = Vector::default();
-                for (k, b) in ring.shape.iter().enumerate() {
-                    turned = turned + at(&other.shape, &free.inverse[k]).times(*b);
-                }
-                let mut motion = Mobility::default() + turned;
-                let mut spin = ring.surface * other.surface / self.inertia_ratio;
-                if i == j {
-                    motion = mobility + turned;
-                    spin += turnings[i].mobility;
-                }
-                walls.links.respond(to, from, motion, spin);
+                links.respond(contact(i), contact(j), motion, spin);
             }
-            if let Some(stop) = walls.stops[i] {
-                walls.links.respond(stop, stop, mobility, R::ZERO);
-                if let Some(contact) = walls.contacts[i] {
-                    walls.links.respond(stop, contact, back, R::ZERO);
-                    walls.links.respond(contact, stop, back, R::ZERO);
-                }
+            if links.get(stop(i)).is_some() {
+                links.respond(stop(i), stop(i), mobility, R::ZERO);
+                links.respond(stop(i), contact(i), mobility.back(), R::ZERO);
+                links.respond(contact(i), stop(i), mobility.back(), R::ZERO);
             }
         }
     }
 
     /// Whether friction gives more than what its sticking is uncertain by.
-    fn gains(&self, state: &CoupledState<R, N, Q>, walls: &Walls<R, N>, time: R) -> bool {
+    fn gains(&self, state: &CoupledState<R, N, Q>, links: &Links<R, N>, time: R) -> bool {
         let (mut heat, mut size) = (R::ZERO, R::ZERO);
         for i in 0..N {
-            let Some(place) = walls.contacts[i] else {
+            let Some(link) = links.get(contact(i)) else {
                 continue;
             };
-            let Some(link) = walls.links.get(place) else {
-                continue;
-            };
-            let moved = walls.links.motion(place);
+            let moved = links.motion(contact(i));
             let velocity = self.relative(state, i);
             let start = R::HALF * time * self.surface(state, i);
             // What the link knows is the surface at the end less half of the velocity before.
-            let end = walls.links.surface(place) + R::HALF * time * link.normal.cross(velocity);
+            let end = links.surface(contact(i)) + R::HALF * time * link.normal.cross(velocity);
             let slip = link.normal.cross(moved) + start + end;
             heat += -(link.rubbed * slip);
             let least = R::EPSILON.sqrt() * start.abs();

@@ -72,6 +72,12 @@ pub struct RingEvent<R> {
     pub event: ModelEvent<R>,
 }
 
+/// Who is told of what happens, and at which part of a step it does.
+pub(super) struct Listener<'a, R> {
+    pub(super) part: R,
+    pub(super) on_event: &'a mut dyn FnMut(RingEvent<R>),
+}
+
 /// Permanent contact in a ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Held<R> {
@@ -296,7 +302,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 return Err(ConfigError::OutOfRange("start", rule));
             }
         }
-        self.meet(&mut state, None, false, R::ZERO, &mut on_event);
+        let (part, on_event) = (R::ZERO, &mut on_event);
+        self.meet(&mut state, None, false, &mut Listener { part, on_event });
         Ok(state)
     }
 
