@@ -1,8 +1,8 @@
 //! The drop of [`super::drop`] by every model but the rigid one.
 
 use touchdown_models::{
-    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
-    Point, RaceConfig, Scheme, StopConfig, Verlet, Whole,
+    Contact, Coupled, CoupledConfig, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
+    RaceConfig, Scheme, StopConfig, Whole,
 };
 use touchdown_rotor::Precision;
 
@@ -31,8 +31,8 @@ pub(super) fn in_plane<R: Precision>(counter: &Counter, table: &mut Table, name:
     }
     for step in SHORT_STEPS {
         let run = with_step(step);
-        run.of_hertz::<R, Euler>(table, "euler");
-        run.of_hertz::<R, Verlet>(table, "verlet");
+        run.of_hertz::<R>(table, "euler", Scheme::Euler);
+        run.of_hertz::<R>(table, "verlet", Scheme::Verlet);
     }
 }
 
@@ -56,16 +56,16 @@ pub(super) fn in_rings<R: Precision>(counter: &Counter, table: &mut Table, name:
 
 impl Run<'_> {
     /// Steel on steel.
-    fn of_hertz<R: Precision, S: Scheme>(&self, table: &mut Table, scheme: &str) {
+    fn of_hertz<R: Precision>(&self, table: &mut Table, name: &str, scheme: Scheme) {
         let config = HertzConfig {
             rigid: config(self.step),
             materials: Materials::steel(),
-            shape: Point,
+            contact: Contact::Point,
             fastest: FASTEST,
         };
-        let model = Hertz::<f64, Point, S>::try_new(&config).expect("a valid configuration");
-        self.of_model::<R, _>(&model.rounded::<R, Point>(), model.scales())
-            .write(table, "hertz", scheme, self);
+        let model = Hertz::try_new(&config, scheme).expect("a valid configuration");
+        self.of_model::<R, _>(&model.rounded(), model.scales())
+            .write(table, "hertz", name, self);
     }
 }
 

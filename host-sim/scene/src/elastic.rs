@@ -7,7 +7,7 @@
 use core::fmt;
 
 use serde::Serialize;
-use touchdown_models::{HertzConfig, Shape};
+use touchdown_models::HertzConfig;
 use touchdown_rotor::error::ConfigError;
 
 /// Band over mode up to which the mode keeps less than a tenth of its static deflection.
@@ -41,8 +41,8 @@ pub struct Validity {
 impl Validity {
     /// In the fastest impact of `contact` at the axial place `zeta` (in radii of gyration from the centre of
     /// mass), where an impact meets 1/(1 + zeta^2) of the mass.
-    pub fn try_new<C: Shape<f64>>(
-        contact: &HertzConfig<f64, C>,
+    pub fn try_new(
+        contact: &HertzConfig<f64>,
         zeta: f64,
         mode_hz: f64,
     ) -> Result<Self, ConfigError> {

@@ -2,25 +2,8 @@
 
 use std::f64::consts::PI;
 
+pub use touchdown_models::Contact;
 use touchdown_models::Materials as Elastic;
-
-/// How rotor and retainer touch.
-#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
-#[strum(serialize_all = "kebab-case")]
-pub enum Contact {
-    /// Sphere in sphere.
-    Point,
-    /// Cylinder in ring, by the logarithm.
-    Line {
-        /// Axial, m.
-        length: f64,
-    },
-    /// The same as a spring.
-    LinePower {
-        /// Axial, m.
-        length: f64,
-    },
-}
 
 /// A wall that gives way: its force over depth, in place of restitution. The balls give way with it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
 
 use touchdown_base::machine::Start;
-use touchdown_models::{Compliance, HertzConfig, Line, LinePower, Point, Shape};
+use touchdown_models::{Compliance, HertzConfig};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
 use crate::elastic::Validity;
-use crate::{CompliantWall, Contact, Ring, Scene, TwoPlane};
+use crate::{CompliantWall, Ring, Scene, TwoPlane};
 
 /// Part of the fastest impact's speed below which a contact's damping is no longer scaled by its own: it has 1e-6 of that
 /// impact's energy.
@@ -14,11 +14,7 @@ const SLOWEST: f64 = 1e-3;
 
 /// How stiff the scene's contact is.
 pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
-    match scene.materials.contact {
-        Contact::Point => compliant(scene, Point).compliance(),
-        Contact::Line { length } => compliant(scene, Line { length }).compliance(),
-        Contact::LinePower { length } => compliant(scene, LinePower { length }).compliance(),
-    }
+    compliant(scene).compliance()
 }
 
 /// How far the rotor is rigid in its contacts, in the ring where it is least; none where the scene does not
@@ -31,15 +27,7 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
     let mode = machine.elastic_mode?;
     let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
     let rings = machine.rings.iter().map(|ring| ring.place / gyration);
-    let all = rings.filter_map(|zeta| match scene.materials.contact {
-        Contact::Point => Validity::try_new(&compliant(scene, Point), zeta, mode).ok(),
-        Contact::Line { length } => {
-            Validity::try_new(&compliant(scene, Line { length }), zeta, mode).ok()
-        }
-        Contact::LinePower { length } => {
-            Validity::try_new(&compliant(scene, LinePower { length }), zeta, mode).ok()
-        }
-    });
+    let all = rings.filter_map(|zeta| Validity::try_new(&compliant(scene), zeta, mode).ok());
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
 }
 
@@ -50,20 +38,7 @@ pub(super) fn wall(
     machine: &TwoPlane,
     ring: &Ring,
 ) -> Result<CompliantWall, ConfigError> {
-    match scene.materials.contact {
-        Contact::Point => wall_of(scene, machine, ring, Point),
-        Contact::Line { length } => wall_of(scene, machine, ring, Line { length }),
-        Contact::LinePower { length } => wall_of(scene, machine, ring, LinePower { length }),
-    }
-}
-
-fn wall_of<C: Shape<f64>>(
-    scene: &Scene,
-    machine: &TwoPlane,
-    ring: &Ring,
-    shape: C,
-) -> Result<CompliantWall, ConfigError> {
-    let mut there = compliant(scene, shape);
+    let mut there = compliant(scene);
     let turned = ring.place * ring.place * scene.rotor.mass / machine.transverse_inertia;
     there.rigid.mass /= 1.0 + turned;
     there.rigid.radius = ring.radius;
@@ -71,7 +46,8 @@ fn wall_of<C: Shape<f64>>(
     let compliance = there.compliance()?;
     // A fall through the static compression: slower, the weight and not the impact decides.
     let weight = scene.rotor.mass * scene.run.gravity;
-    let settled = C::depth(weight / compliance.stiffness, ring.retainer.clearance);
+    let shape = there.contact.shape();
+    let settled = shape.depth(weight / compliance.stiffness, ring.retainer.clearance);
     let slowest = (2.0 * scene.run.gravity * settled).sqrt();
     Ok(CompliantWall {
         contact: scene.materials.contact,
@@ -88,12 +64,12 @@ pub(super) fn accurate_step(scene: &Scene) -> f64 {
     walls.fold(f64::INFINITY, |least, it| least.min(it.contact_time / 25.0))
 }
 
-/// Contact of the scene with the shape `shape`.
-pub fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {
+/// Contact of the scene.
+pub fn compliant(scene: &Scene) -> HertzConfig<f64> {
     HertzConfig {
         rigid: config(scene),
         materials: scene.materials.elastic,
-        shape,
+        contact: scene.materials.contact,
         fastest: fastest_impact(scene),
     }
 }

@@ -1,12 +1,12 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
 use touchdown_models::{
-    CompliantConfig, CompliantShape, MountConfig, RaceConfig, RingConfig, SeatConfig, StopConfig,
+    CompliantConfig, MountConfig, RaceConfig, RingConfig, SeatConfig, StopConfig,
 };
 
 use touchdown_scene::{
-    BallBearing, CompliantWall, Contact, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene,
-    Stop, TwoPlane,
+    BallBearing, CompliantWall, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, Stop,
+    TwoPlane,
 };
 
 /// The rotor's ends, where the rung has them.
@@ -79,11 +79,7 @@ fn stop(stop: Stop) -> StopConfig<f64> {
 
 fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
     CompliantConfig {
-        shape: match wall.contact {
-            Contact::Point => CompliantShape::Point,
-            Contact::Line { .. } => CompliantShape::Line,
-            Contact::LinePower { .. } => CompliantShape::LinePower,
-        },
+        shape: wall.contact.shape(),
         stiffness: wall.stiffness,
         balls: wall.balls,
         slowest: wall.slowest,

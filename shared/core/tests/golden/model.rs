@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use touchdown_models::{
-    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig, Moreau, MountConfig,
-    Placement, Point, RaceConfig, StopConfig, Verlet, Whole,
+    Contact, Coupled, CoupledConfig, Hertz, HertzConfig, Materials, ModeConfig, Moreau,
+    MountConfig, Placement, RaceConfig, Scheme, StopConfig, Whole,
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
@@ -151,12 +151,12 @@ fn by_steps(text: &mut String) {
     let config = HertzConfig {
         rigid: RigidConfig { step: 1e-6, ..RIG },
         materials: Materials::steel(),
-        shape: Point,
+        contact: Contact::Point,
         fastest: 0.2,
     };
-    let hertz = Hertz::<f64, Point, Verlet>::try_new(&config).expect("a valid machine");
+    let hertz = Hertz::<f64>::try_new(&config, Scheme::Verlet).expect("a valid machine");
     run::<f64, _>(text, "hertz, verlet: drop", &hertz, &DROP, SPIN, 20_000);
-    let hertz = Hertz::<f64, Point, Euler>::try_new(&config).expect("a valid machine");
+    let hertz = Hertz::<f64>::try_new(&config, Scheme::Euler).expect("a valid machine");
     run::<f64, _>(text, "hertz, euler: drop", &hertz, &DROP, SPIN, 20_000);
 }
 

@@ -7,7 +7,7 @@
 use super::links::{Grip, Link};
 use super::units::Units;
 use super::vector::Vector;
-use crate::hertz::{Line, LinePower, Point, Shape, damping};
+use crate::hertz::{Shape, damping};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
@@ -17,24 +17,11 @@ use touchdown_rotor::scales::positive;
 /// Newton's steps for the part of the depth that is not the balls': each doubles the digits.
 const POLISHINGS: usize = 8;
 
-/// How the force grows with the depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CompliantShape {
-    /// [`Point`].
-    Point,
-    /// [`Line`].
-    Line,
-    /// [`LinePower`].
-    LinePower,
-    /// In proportion to it.
-    Spring,
-}
-
 /// A wall that gives way, SI. The ring's restitution sets its damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompliantConfig<R> {
     /// How the force grows.
-    pub shape: CompliantShape,
+    pub shape: Shape,
     /// K, N/m^n.
     pub stiffness: R,
     /// Of balls and races, which give way with the wall, N/m; rigid without.
@@ -45,7 +32,7 @@ pub struct CompliantConfig<R> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Compliant<R> {
-    shape: CompliantShape,
+    shape: Shape,
     /// Force per mass of the rotor.
     stiffness: R,
     balls: Option<R>,
@@ -87,7 +74,7 @@ impl<R: Precision> Compliant<R> {
     /// A spring that takes nothing: its stiffness per mass of the rotor, and the way to it.
     pub(super) fn spring(stiffness: R, gap: R) -> Self {
         Self {
-            shape: CompliantShape::Spring,
+            shape: Shape::Spring,
             stiffness,
             balls: None,
             damping: R::ZERO,
@@ -108,7 +95,7 @@ impl<R: Precision> Compliant<R> {
         let scales = &units.scales;
         let spring = scales.length / scales.speed * (scales.length / scales.speed) / units.mass;
         let root = match config.shape {
-            CompliantShape::Point => scales.length.sqrt(),
+            Shape::Point => scales.length.sqrt(),
             _ => R::ONE,
         };
         if let Some(balls) = config.balls {
@@ -129,12 +116,8 @@ impl<R: Precision> Compliant<R> {
         if depth <= R::ZERO {
             return [R::ZERO; 2];
         }
-        let (power, slope) = match self.shape {
-            CompliantShape::Point => law::<R, Point>(depth, self.gap),
-            CompliantShape::Line => law::<R, Line<R>>(depth, self.gap),
-            CompliantShape::LinePower => law::<R, LinePower<R>>(depth, self.gap),
-            CompliantShape::Spring => (depth, R::ONE),
-        };
+        let power = self.shape.power(depth, self.gap);
+        let slope = self.shape.slope(depth, power);
         let force = self.stiffness * power;
         [force, slope * force / depth]
     }
@@ -169,12 +152,7 @@ impl<R: Precision> Compliant<R> {
         let own = self.own(depth);
         let [force, _] = self.alone(own);
         let power = force / self.stiffness;
-        let parts = match self.shape {
-            CompliantShape::Point => Point::parts(own, power),
-            CompliantShape::Line => Line::parts(own, power),
-            CompliantShape::LinePower => LinePower::parts(own, power),
-            CompliantShape::Spring => R::TWO,
-        };
+        let parts = self.shape.parts(own, power);
         let balls = self.balls.map_or(R::ZERO, |it| R::HALF * force / it);
         force * (own / parts + balls)
     }
@@ -188,7 +166,7 @@ impl<R: Precision> Compliant<R> {
             return [mean * share, slope * share + mean * before];
         }
         let (from, inside) = (from.most(R::ZERO), to.most(R::ZERO));
-        let mean = if self.balls.is_none() && self.shape == CompliantShape::Point {
+        let mean = if self.balls.is_none() && self.shape == Shape::Point {
             // Of d^1.5: by differences of d^2.5, of which the root of the depth is a factor.
             let (a, b) = (from.sqrt(), inside.sqrt());
             let sum = a + b;
@@ -294,9 +272,4 @@ impl<R: Precision> SoftContact<R> {
         self.stays |= again;
         again
     }
-}
-
-fn law<R: Real, C: Shape<R>>(depth: R, gap: R) -> (R, R) {
-    let power = C::power(depth, gap);
-    (power, C::slope(depth, power))
 }

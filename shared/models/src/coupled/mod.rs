@@ -32,7 +32,7 @@ mod units;
 mod vector;
 mod whole;
 
-pub use compliant::{CompliantConfig, CompliantShape};
+pub use compliant::CompliantConfig;
 pub use config::{
     ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
 };
