@@ -4,8 +4,8 @@
 //! In a stretch the force is its mean over the way from one depth to the other, so that a contact without damping keeps
 //! the energy. Its tangent makes it a link that gives way; stretch by stretch that is found by Newton's method (`normals`).
 
+use super::Units;
 use super::links::{Grip, Link};
-use super::units::Units;
 use super::vector::Vector;
 use crate::hertz::{Shape, damping};
 use touchdown_rotor::clock::Instant;

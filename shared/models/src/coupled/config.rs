@@ -3,11 +3,11 @@
 use core::cmp::Ordering;
 
 use super::compliant::{Compliant, CompliantConfig};
+use super::magnets::Magnet;
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
-use super::units::Units;
 use super::vector::Vector;
-use super::{Base, Coupled, Magnet, Ring};
+use super::{Base, Coupled, Ring, Units};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
@@ -213,9 +213,8 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
         }
         finite("gravity", &self.gravity)?;
         let unbalance = &self.unbalance;
-        let angles = [unbalance.angle, unbalance.skew_angle];
-        finite("unbalance", &[unbalance.eccentricity, unbalance.skew])?;
-        finite("unbalance", &angles)?;
+        finite("unbalance", &[unbalance.eccentricity, unbalance.angle])?;
+        finite("unbalance", &[unbalance.skew, unbalance.skew_angle])?;
         for magnet in &self.magnets {
             finite("magnets", &[magnet.place, magnet.stiffness])?;
             finite("magnets", &magnet.force)?;

@@ -204,9 +204,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let seat = &mut state.seats[i];
         if let Some(mount) = &ring.mount {
             mount.advance(&mut seat.mount, &passage.rides[i], time, passage.pushed[i]);
-            if !passage.stopped[i] {
-                mount.release(&mut seat.mount);
-            }
+            seat.mount.stopped &= passage.stopped[i];
         }
         let rub = passage.rub(i);
         let (mut turned, mut race_spin) = (R::ZERO, R::ZERO);

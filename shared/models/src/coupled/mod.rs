@@ -18,8 +18,8 @@ mod compliant;
 mod config;
 mod energy;
 mod follow;
-mod limit;
 mod links;
+mod magnets;
 mod mount;
 mod normals;
 mod passage;
@@ -27,8 +27,6 @@ mod race;
 mod settle;
 mod state;
 mod strike;
-mod switch;
-mod units;
 mod vector;
 mod whole;
 
@@ -44,9 +42,9 @@ pub use whole::Whole;
 
 use compliant::Compliant;
 use config::{MAGNETS, MODES};
+use magnets::Magnet;
 use mount::Sprung;
 use race::BallBearing;
-use touchdown_rotor::clock::Instant;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
@@ -80,18 +78,6 @@ impl<R: Real, const Q: usize> Default for Ring<R, Q> {
             race: None,
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Magnet<R, const Q: usize> {
-    shape: [R; Q],
-    stiffness: R,
-    damping: R,
-    force: Vector<R>,
-    /// Of the force, on each axis.
-    limit: Option<R>,
-    /// From when and until when; always without.
-    on: Option<[Instant<R>; 2]>,
 }
 
 /// A base that goes to and fro: the acceleration that all on it feels, from which it is seen.
@@ -129,6 +115,19 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     step: R,
     /// Tilt of 1, rad.
     tilt: R,
+    scales: Scales<R>,
+}
+
+/// What turns SI into the model's units: of the rotor and one of its rings.
+#[derive(Clone, Copy, Debug)]
+struct Units<R> {
+    mass: R,
+    /// Of the rotor at the first ring, m.
+    radius: R,
+    /// Of the retainer, m.
+    bore: R,
+    /// Length of a step, T.
+    step: R,
     scales: Scales<R>,
 }
 
@@ -193,7 +192,7 @@ impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
                     damping: R::lit(magnet.damping),
                     force: vector(magnet.force),
                     limit: magnet.limit.map(R::lit),
-                    on: magnet.on.map(|it| it.map(switch::rounded)),
+                    on: magnet.on.map(|it| it.map(magnets::rounded)),
                 })
             }),
             base: self.base.map(|base| Base {

@@ -15,8 +15,8 @@
 //! the mean motion. It stops a ring that it would turn round, and gives nothing where that turns round by itself; a ring
 //! that it holds gives way to nothing. It has no impulse in an impact.
 
+use super::Units;
 use super::compliant::Compliant;
-use super::units::Units;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
@@ -68,6 +68,12 @@ impl<R> StopConfig<R> {
 }
 
 impl<R: Real> MountConfig<R> {
+    /// Along x and along y: stiffness and damping.
+    pub fn axes(&self) -> [[R; 2]; 2] {
+        let along_x = [self.stiffness, self.damping];
+        [along_x, self.vertical.unwrap_or(along_x)]
+    }
+
     fn check(&self) -> Result<(), ConfigError> {
         positive("support_mass", self.mass)?;
         positive("stiffness", self.stiffness)?;
@@ -139,13 +145,8 @@ impl<R: Real> Ride<R> {
 
     /// Whether dry friction leaves the ring where it is.
     pub(super) fn rests(&self) -> bool {
-        matches!(
-            self.dry,
-            Some(Dry {
-                rub: Rub::Rests(_),
-                ..
-            })
-        )
+        let rub = self.dry.map(|it| it.rub);
+        matches!(rub, Some(Rub::Rests(_)))
     }
 
     pub(super) fn rests_on_stop(&self) -> bool {
@@ -213,32 +214,13 @@ pub(super) struct Sprung<R> {
 /// The ring's motion, and what the support has taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SprungState<R> {
-    place: Sums<R>,
-    velocity: Sums<R>,
-    stopped: bool,
-    rests: bool,
+    pub(super) place: Sums<R>,
+    pub(super) velocity: Sums<R>,
+    /// Whether the hard stop holds the ring, and whether dry friction does.
+    pub(super) stopped: bool,
+    pub(super) rests: bool,
     damped: Sum<R>,
     stopping: Sum<R>,
-}
-
-impl<R: Real> SprungState<R> {
-    pub(super) fn place(&self) -> Vector<R> {
-        self.place.value()
-    }
-
-    pub(super) fn velocity(&self) -> Vector<R> {
-        self.velocity.value()
-    }
-
-    /// Whether the hard stop holds the ring.
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stopped
-    }
-
-    /// Whether dry friction holds it.
-    pub(super) fn rests(&self) -> bool {
-        self.rests
-    }
 }
 
 impl Sprung<f64> {
@@ -564,10 +546,6 @@ impl<R: Precision> Sprung<R> {
         state.stopped = true;
         let work = middle.dot_along(moved, self.each(|it| it.stiffness));
         state.stopping.add(-work);
-    }
-
-    pub(super) fn release(&self, state: &mut SprungState<R>) {
-        state.stopped = false;
     }
 
     /// Kinetic, in spring and stop; taken by support and stop.

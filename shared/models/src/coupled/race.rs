@@ -5,7 +5,7 @@
 //! = 1/(1 + z + z^2/2), z = h d_1/b, is the decay to second order, without swing at any step, and g = (1 - E)/(h d_1). The dry
 //! drag D is h d_0 or less, and stops the ring: D is then what leaves s+ = 0. Temperature alike.
 
-use super::units::Units;
+use super::Units;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::{not_negative, positive};
@@ -130,9 +130,7 @@ impl<R: Real> BallBearing<R> {
         let cooled = lost * state.temperature.value();
         state.temperature.add(self.warming * heat * left - cooled);
     }
-}
 
-impl<R: Real> BallBearing<R> {
     pub(super) fn try_new(config: &RaceConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
         config.check()?;
         let scales = &units.scales;

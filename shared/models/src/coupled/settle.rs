@@ -49,7 +49,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// Velocity of a ring by an impulse; dry friction holds a ring that rests.
     fn ring_mobility(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
-        let moves = !state.seats[ring].mount.rests();
+        let moves = !state.seats[ring].mount.rests;
         let mount = self.rings[ring].mount.as_ref().filter(|_| moves);
         mount.map_or(R::ZERO, |it| it.mobility())
     }
@@ -118,7 +118,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     fn give(&self, state: &mut CoupledState<R, N, Q>, ring: usize, push: Vector<R>) {
         state.kick(&self.rings[ring].shape, push);
         if let Some(mount) = &self.rings[ring].mount
-            && !state.seats[ring].mount.rests()
+            && !state.seats[ring].mount.rests
         {
             let back = Vector::default() - push;
             mount.kick(&mut state.seats[ring].mount, back);
@@ -129,7 +129,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// rounding.
     pub(super) fn seat(&self, state: &mut CoupledState<R, N, Q>) {
         for (ring, seat) in self.rings.iter().zip(&mut state.seats) {
-            if let Some(mount) = ring.mount.as_ref().filter(|_| seat.mount.is_stopped()) {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| seat.mount.stopped) {
                 mount.seat(&mut seat.mount);
             }
         }
@@ -194,7 +194,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     pub(super) fn rub(&self, state: &mut CoupledState<R, N, Q>, i: usize, impulse: R) -> bool {
         let ring = &self.rings[i];
         let normal = self.within(state, i).unit();
-        let rests = state.seats[i].mount.rests();
+        let rests = state.seats[i].mount.rests;
         let stands = state.is_stopped(i) || rests || ring.mount.is_none();
         let velocity = if stands {
             self.relative(state, i) + state.ring_velocity(i)
