@@ -1,21 +1,14 @@
 //! `[base]`: motion of what the machine stands on.
 
 use serde::Deserialize;
+use touchdown_models::BaseConfig;
 
 use super::diagnostic::Diagnostic;
 use super::rule::{Keys, MILLI};
 use super::{limits, list};
 
 /// A base that goes to and fro: by its amplitude times the cosine of an angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Base {
-    /// m.
-    pub amplitude: [f64; 2],
-    /// Of the angle, rad/s.
-    pub rate: f64,
-    /// At the release, rad.
-    pub phase: f64,
-}
+pub type Base = BaseConfig<f64>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,6 +1,7 @@
 //! `[support]` and `[ball_bearing]`: a retainer ring that gives way and one that turns.
 
 use serde::Deserialize;
+use touchdown_models::{MountConfig, StopConfig};
 
 use super::diagnostic::Diagnostic;
 use super::limits;
@@ -13,48 +14,9 @@ const EDGE_ERROR: f64 = 0.004;
 const SPEED_WINDOW: f64 = 0.005;
 
 /// What the retainer ring stands on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Support {
-    /// Of the ring and all that moves with it, kg.
-    pub mass: f64,
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
-    /// Stiffness and damping along y, where they are others than along x.
-    pub vertical: Option<[f64; 2]>,
-    /// Dry friction of the ring on its seat, against its motion, N.
-    pub friction: f64,
-    /// What ends the ring's way, if anything does.
-    pub stop: Option<Stop>,
-}
-
+pub type Support = MountConfig<f64>;
 /// A stop of a ring, without friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
-    /// Of the ring to it, radial, m.
-    pub travel: f64,
-    /// Of a stop that gives way and gives all back, N/m; a rigid one gives nothing back.
-    pub stiffness: Option<f64>,
-}
-
-impl Stop {
-    /// One that does not give way.
-    pub const fn rigid(travel: f64) -> Self {
-        Self {
-            travel,
-            stiffness: None,
-        }
-    }
-
-    /// That of two rings that are one.
-    pub(super) fn with(self, other: Self) -> Self {
-        Self {
-            travel: self.travel.min(other.travel),
-            stiffness: self.stiffness.zip(other.stiffness).map(|(a, b)| a + b),
-        }
-    }
-}
+pub type Stop = StopConfig<f64>;
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,14 +37,6 @@ pub struct BallBearing {
     pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
     pub marks: [Option<u16>; 2],
-}
-
-impl Support {
-    /// Along x and along y: stiffness and damping.
-    pub fn axes(&self) -> [[f64; 2]; 2] {
-        let along_x = [self.stiffness, self.damping];
-        [along_x, self.vertical.unwrap_or(along_x)]
-    }
 }
 
 impl BallBearing {

@@ -8,7 +8,7 @@ use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{Keys, MILLI, ON_THE_WALL};
-use super::support::{BallBearing, BallBearingTable, Support, SupportTable};
+use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable};
 use super::{Retainer, Rotor, Scene, Start, limits, list};
 use touchdown_base::plain::Number;
 
@@ -89,7 +89,10 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
             .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
         friction: a.friction + b.friction,
         stop: match (a.stop, b.stop) {
-            (Some(a), Some(b)) => Some(a.with(b)),
+            (Some(a), Some(b)) => Some(Stop {
+                travel: a.travel.min(b.travel),
+                stiffness: a.stiffness.zip(b.stiffness).map(|(a, b)| a + b),
+            }),
             (a, b) => a.or(b),
         },
     })

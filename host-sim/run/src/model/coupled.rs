@@ -1,8 +1,8 @@
 //! Rungs `support`, `two-plane` and `coupled`: from the scene's parts to a model.
 
 use touchdown_models::{
-    ActuatorConfig, BaseConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement,
-    UnbalanceConfig, Whole,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement, UnbalanceConfig,
+    Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::scales::Scales;
@@ -139,11 +139,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, Config
         };
     }
     if scene.model.rung == Fidelity::Coupled && scene.model.has(Removable::Base) {
-        config.base = machine.base.map(|it| BaseConfig {
-            amplitude: it.amplitude,
-            rate: it.rate,
-            phase: it.phase,
-        });
+        config.base = machine.base;
     }
     for (to, mode) in config.modes.iter_mut().zip(modelled_modes(scene)) {
         *to = Some(ModeConfig {

@@ -1,11 +1,9 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
-use touchdown_models::{
-    CompliantConfig, MountConfig, RaceConfig, RingConfig, SeatConfig, StopConfig,
-};
+use touchdown_models::{CompliantConfig, RaceConfig, RingConfig, SeatConfig};
 
 use touchdown_scene::{
-    BallBearing, CompliantWall, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, Stop,
+    BallBearing, CompliantWall, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, Support,
     TwoPlane,
 };
 
@@ -56,25 +54,14 @@ pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
         mount: ring
             .support
             .filter(|_| has(Removable::Mount))
-            .map(|it| MountConfig {
-                mass: it.mass,
-                stiffness: it.stiffness,
-                damping: it.damping,
-                vertical: it.vertical,
-                friction: it.friction,
-                stop: it.stop.filter(|_| has(Removable::Stop)).map(stop),
+            .map(|it| Support {
+                stop: it.stop.filter(|_| has(Removable::Stop)),
+                ..it
             }),
         race: ring.ball_bearing.filter(|_| has(turns)).map(race),
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
-}
-
-fn stop(stop: Stop) -> StopConfig<f64> {
-    StopConfig {
-        travel: stop.travel,
-        stiffness: stop.stiffness,
-    }
 }
 
 fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
