@@ -7,7 +7,7 @@ use super::magnets::Magnet;
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
 use super::vector::Vector;
-use super::{Base, Coupled, Ring, Units};
+use super::{Base, Coupled, Ring, Units, product};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
@@ -255,18 +255,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return Err(ConfigError::OutOfRange("modes", "0 to 3"));
         }
         config.check(Q.saturating_sub(2))?;
-        let Some(first) = config.rings.first().map(|seat| seat.ring) else {
+        let Some(first) = config.rings.first() else {
             return Err(ConfigError::OutOfRange("rings", "1 to 4"));
         };
         let pull = Vector::new(config.gravity).length();
-        let scales = Scales::try_new(first.clearance, pull, first.radius, config.speed)?;
+        let scales = Scales::try_new(first.ring.clearance, pull, first.ring.radius, config.speed)?;
         let arm = (config.transverse_inertia / config.mass).sqrt();
         let ratio = config.polar_inertia / config.transverse_inertia;
-        let size = scales.length / first.radius;
+        let radius = first.ring.radius;
+        let size = scales.length / radius;
         let rate = scales.time * scales.time / scales.length;
         let mut model = Self {
-            rings: [Ring::default(); N],
-            inertia_ratio: config.polar_inertia / config.mass / first.radius / first.radius,
+            // Each by its own seat below.
+            rings: [Ring::try_new([R::ZERO; Q], first, config, &scales)?; N],
+            inertia_ratio: config.polar_inertia / config.mass / radius / radius,
             gyration: ratio * size,
             turn: size,
             gravity: Vector::new(config.gravity).times(rate),
@@ -292,12 +294,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 model.decay[k + 2] = R::TWO * mode.damping_ratio * mode.speed * scales.time;
             }
         }
-        for (ring, seat) in model.rings.iter_mut().zip(&config.rings) {
-            *ring = Ring::try_new(seat, config, &first, &scales)?;
-        }
-        for k in 0..N {
-            model.rings[k].shape =
-                model.shape_at(config.rings[k].ring.place, config.rings[k].shape);
+        for (k, seat) in config.rings.iter().enumerate() {
+            let shape = model.shape_at(seat.ring.place, seat.shape);
+            model.rings[k] = Ring::try_new(shape, seat, config, &scales)?;
         }
         for k in 0..MAGNETS {
             let magnet = &config.magnets[k];
@@ -348,13 +347,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         positive("inertia_ratio", self.inertia_ratio)?;
         let mut pull = R::ZERO;
         for magnet in self.magnets.iter().flatten() {
-            let square = magnet.shape.iter().fold(R::ZERO, |sum, b| sum + *b * *b);
+            let square = product(&magnet.shape, &magnet.shape);
             finite("magnets", &[magnet.stiffness * square])?;
             pull += magnet.stiffness.most(R::ZERO) * square;
         }
         for ring in &self.rings {
-            let square = ring.shape.iter().fold(R::ZERO, |sum, b| sum + *b * *b);
-            finite("place", &[square])?;
+            finite("place", &[product(&ring.shape, &ring.shape)])?;
         }
         if R::HALF * R::HALF * self.step * self.step * pull > R::lit(STIFFEST) {
             let rule = "no more than 1 over the rate at which the magnets pull away";
@@ -366,12 +364,12 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
 impl<R: Precision, const Q: usize> Ring<R, Q> {
     fn try_new<const N: usize>(
+        shape: [R; Q],
         seat: &SeatConfig<R>,
         config: &CoupledConfig<R, N>,
-        first: &RingConfig<R>,
         scales: &Scales<R>,
     ) -> Result<Self, ConfigError> {
-        let ring = &seat.ring;
+        let (ring, first) = (&seat.ring, &config.rings[0].ring);
         let units = Units {
             mass: config.mass,
             radius: first.radius,
@@ -380,21 +378,18 @@ impl<R: Precision, const Q: usize> Ring<R, Q> {
             scales: *scales,
         };
         let limit = ring.clearance / first.clearance;
-        let compliant = seat.compliant.as_ref();
-        let compliant = compliant.map(|it| Compliant::try_new(it, ring.restitution, limit, &units));
-        let mount = seat.mount.as_ref();
-        let race = seat.race.as_ref();
+        let compliant = |it| Compliant::try_new(it, ring.restitution, limit, &units);
+        let mount = |it| Sprung::try_new(it, &units);
+        let race = |it| BallBearing::try_new(it, &units);
         Ok(Self {
-            shape: [R::ZERO; Q],
+            shape,
             limit,
             surface: ring.radius / first.radius,
             friction: ring.friction,
             restitution: ring.restitution,
-            compliant: compliant.transpose()?,
-            mount: mount.map(|it| Sprung::try_new(it, &units)).transpose()?,
-            race: race
-                .map(|it| BallBearing::try_new(it, &units))
-                .transpose()?,
+            compliant: seat.compliant.as_ref().map(compliant).transpose()?,
+            mount: seat.mount.as_ref().map(mount).transpose()?,
+            race: seat.race.as_ref().map(race).transpose()?,
         })
     }
 }

@@ -135,7 +135,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             }
         }
         self.calm(&before, state);
-        let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.stuck));
+        let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.is_stuck()));
         if !passage.rubs {
             state.jammed = state.jammed.or(Some(state.tick));
             stuck = self.rub_in_turn(state, passage);
@@ -174,7 +174,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             books.driven.add(push.dot(passage.moved[0]));
             for (i, ring) in self.rings.iter().enumerate() {
                 if let Some(mount) = &ring.mount {
-                    books.driven.add(mount.shaken(push, passage.ring_moved(i)));
+                    let moved = passage.ring_moved(i);
+                    books.driven.add(mount.mass * push.dot(moved));
                 }
             }
         }

@@ -65,21 +65,6 @@ struct Ring<R, const Q: usize> {
     race: Option<BallBearing<R>>,
 }
 
-impl<R: Real, const Q: usize> Default for Ring<R, Q> {
-    fn default() -> Self {
-        Self {
-            shape: [R::ZERO; Q],
-            limit: R::ONE,
-            surface: R::ONE,
-            friction: R::ZERO,
-            restitution: R::ZERO,
-            compliant: None,
-            mount: None,
-            race: None,
-        }
-    }
-}
-
 /// A base that goes to and fro: the acceleration that all on it feels, from which it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Base<R> {

@@ -202,7 +202,7 @@ enum StopLaw<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sprung<R> {
     /// Over the rotor's.
-    mass: R,
+    pub(super) mass: R,
     across: AxisSpring<R>,
     /// Where it is another than across.
     vertical: Option<AxisSpring<R>>,
@@ -440,11 +440,6 @@ impl<R: Precision> Sprung<R> {
             Some(StopLaw::Gives(stop)) => Some(stop),
             _ => None,
         }
-    }
-
-    /// Work of the base's motion.
-    pub(super) fn shaken(&self, push: Vector<R>, moved: Vector<R>) -> R {
-        self.mass * push.dot(moved)
     }
 
     /// Velocity by an impulse.

@@ -4,10 +4,12 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
+use core::array::from_fn;
+
 use super::compliant::Compliant;
 use super::config::MAGNETS;
 use super::links::{Grip, Link, Links, contact, stop};
-use super::mount::{Ride, Rub};
+use super::mount::{Ride, Rub, Sprung};
 use super::race::{Drag, Turning};
 use super::vector::{Mobility, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
@@ -24,25 +26,15 @@ pub(super) const REACH: f64 = 0.25;
 /// a radian in a stretch slips by less in its mean.
 const MOST_GAINED: f64 = 0.01;
 
-/// A contact in a stretch; impulses as the displacement that they give a rotor free to move: times half the
-/// stretch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Press<R> {
-    pub(super) pressed: R,
-    pub(super) rubbed: R,
-    /// Outward normal in the middle.
-    pub(super) normal: Vector<R>,
-    pub(super) stuck: bool,
-}
-
-/// A stretch.
+/// A stretch; impulses as the displacement that they give a rotor free to move: times half its time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) time: R,
     pub(super) moved: [Vector<R>; Q],
     pub(super) kick: [Vector<R>; Q],
     pub(super) rides: [Ride<R>; N],
-    pub(super) presses: [Option<Press<R>>; N],
+    /// Of each ring's wall, where the axis presses on it.
+    pub(super) presses: [Option<Link<R>>; N],
     /// Force of the magnets beyond what displacement and velocity ask for: what their limits leave out.
     pub(super) cut: Option<[Vector<R>; MAGNETS]>,
     /// Displacement of the rings by rotor and stop.
@@ -65,27 +57,6 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
 }
 
 impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
-    fn new(time: R) -> Self {
-        Self {
-            time,
-            moved: [Vector::default(); Q],
-            kick: [Vector::default(); Q],
-            rides: [Ride::default(); N],
-            presses: [None; N],
-            cut: None,
-            pushed: [[Vector::default(); 2]; N],
-            stopped: [false; N],
-            drags: [Drag::Runs(R::ZERO); N],
-            spun: R::ZERO,
-            unbalance: [Vector::default(); Q],
-            shaken: None,
-            rubs: true,
-            solved: true,
-            systems: 0,
-            inverse: [[Vector::default(); Q]; Q],
-        }
-    }
-
     /// Takes all walls out.
     fn clear(&mut self) {
         self.presses = [None; N];
@@ -119,28 +90,23 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The next `time`.
     pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
-        let mut passage = Passage::new(time);
-        self.free(state, &mut passage);
+        let mut passage = self.free(state, time);
+        self.press(state, &mut passage);
         if self.repeats {
-            self.press_by_repetition(state, &mut passage);
-        } else {
-            self.press(state, &mut passage);
+            self.repeat(state, &mut passage);
         }
         passage
     }
 
-    /// [`Coupled::press`], with the parts that depend on what comes of it.
-    fn press_by_repetition(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
-        self.press(state, passage);
+    /// Again, with what depends on what comes of it.
+    fn repeat(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         for repetition in 1..REPETITIONS {
             if !passage.solved {
                 break;
             }
-            let turns = repetition < DRAGS && self.correct_drags(state, passage);
-            let last = repetition + 1 == REPETITIONS;
-            let rubs = self.correct_mounts(state, passage, last);
+            let rings = self.correct_rings(state, passage, repetition);
             let cuts = self.correct_magnets(state, passage);
-            if !turns && !rubs && !cuts {
+            if !rings && !cuts {
                 break;
             }
             passage.clear();
@@ -149,65 +115,70 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Drags that the passage shows to be others; whether there are any.
-    fn correct_drags(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) -> bool {
-        let mut changed = false;
-        for (i, ring) in self.rings.iter().enumerate() {
-            let (drag, rub) = (passage.drags[i], passage.rub(i));
-            let other = ring
-                .race
-                .as_ref()
-                .and_then(|it| it.corrected(&state.seats[i].race, passage.time, drag, rub));
-            if let Some(other) = other {
-                (passage.drags[i], changed) = (other, true);
-            }
-        }
-        changed
-    }
-
-    /// The same of the dry friction of mounts; what is not found by the last repetition gives nothing.
-    fn correct_mounts(
+    /// Drags of inner rings and dry friction of mounts that the passage shows to be others; whether there are any. Friction
+    /// that is not found by the last repetition gives nothing.
+    fn correct_rings(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &mut Passage<R, N, Q>,
-        last: bool,
+        repetition: usize,
     ) -> bool {
-        let mut changed = false;
-        for (i, ring) in self.rings.iter().enumerate() {
-            let (mount, time) = (&state.seats[i].mount, passage.time);
-            let Some(it) = ring.mount.as_ref().filter(|it| it.rubs()) else {
-                continue;
-            };
-            if let Some(rub) = it.corrected(mount, &passage.rides[i], time, passage.pushed[i]) {
+        let (time, mut changed) = (passage.time, false);
+        for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
+            let (drag, ride, pushed) = (passage.drags[i], &passage.rides[i], passage.pushed[i]);
+            if let Some(mount) = &ring.mount
+                && let Some(rub) = mount.corrected(&seat.mount, ride, time, pushed)
+            {
+                let last = repetition + 1 == REPETITIONS;
                 let rub = if last { Rub::Turns } else { rub };
-                passage.rides[i] = it.ride(mount, time, passage.shaken, Some(rub));
+                passage.rides[i] = mount.ride(&seat.mount, time, passage.shaken, Some(rub));
                 changed = true;
+            }
+            if let Some(race) = ring.race.as_ref().filter(|_| repetition < DRAGS)
+                && let Some(drag) = race.corrected(&seat.race, time, drag, passage.rub(i))
+            {
+                (passage.drags[i], changed) = (drag, true);
             }
         }
         changed
     }
 
     /// Without any wall.
-    fn free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
-        let time = passage.time;
-        passage.shaken = self.shaken(state, time);
-        for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
-            if let Some(mount) = &ring.mount {
-                let rub = mount.guess(&seat.mount);
-                passage.rides[i] = mount.ride(&seat.mount, time, passage.shaken, rub);
-            }
-            if let Some(race) = &ring.race {
-                passage.drags[i] = race.guess(&seat.race);
-            }
-        }
-        if self.repeats {
-            passage.cut = self.cut_at_first(state);
-        }
-        passage.unbalance = self.unbalance(state, time);
-        self.go_free(state, passage);
+    fn free(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
+        let shaken = self.shaken(state, time);
+        let ride = |i: usize| {
+            let (mount, state) = (self.rings[i].mount.as_ref(), &state.seats[i].mount);
+            let ride = |it: &Sprung<R>| it.ride(state, time, shaken, it.guess(state));
+            mount.map_or(Ride::default(), ride)
+        };
+        let drag = |i: usize| {
+            let race = self.rings[i].race.as_ref();
+            race.map_or(Drag::Runs(R::ZERO), |it| it.guess(&state.seats[i].race))
+        };
+        let limited = self.repeats.then(|| self.cut_at_first(state));
+        let mut passage = Passage {
+            time,
+            moved: [Vector::default(); Q],
+            kick: [Vector::default(); Q],
+            rides: from_fn(ride),
+            presses: [None; N],
+            cut: limited.flatten(),
+            pushed: [[Vector::default(); 2]; N],
+            stopped: [false; N],
+            drags: from_fn(drag),
+            spun: R::ZERO,
+            unbalance: self.unbalance(state, time),
+            shaken,
+            rubs: true,
+            solved: true,
+            systems: 0,
+            inverse: [[Vector::default(); Q]; Q],
+        };
+        self.go_free(state, &mut passage);
+        passage
     }
 
-    pub(super) fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+    fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         let (time, half) = (passage.time, R::HALF * passage.time);
         let (places, velocities) = (state.places(), state.velocities());
         let nutation = self.gyration * state.spin.value();
@@ -304,12 +275,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             passage.stopped[i] = ride.rests_on_stop();
             if let Some(link) = links.pressing(contact(i)) {
                 let push = link.push();
-                passage.presses[i] = Some(Press {
-                    pressed: link.pressed,
-                    rubbed: link.rubbed,
-                    normal: link.normal,
-                    stuck: link.is_stuck(),
-                });
+                passage.presses[i] = Some(*link);
                 for (sum, b) in pushes.iter_mut().zip(&ring.shape) {
                     *sum = *sum + push.times(*b);
                 }
