@@ -124,7 +124,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         }
         let before = self.race_spins(&self.state);
         let told = &mut self.told;
-        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
+        let take = |it| told.take(&it);
         self.of.model.step(&mut self.state, take);
         let after = self.race_spins(&self.state);
         for (turned, (a, b)) in self.turned.iter_mut().zip(before.iter().zip(after)) {
@@ -259,10 +259,8 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         let mut state = self.state;
         if fraction > 0.0 {
-            let ignore: &mut dyn FnMut(RingEvent<R>) = &mut |_| ();
-            self.of
-                .model
-                .part_step(&mut state, R::lit(fraction), ignore);
+            let (model, part) = (&self.of.model, R::lit(fraction));
+            model.part_step(&mut state, part, &mut |_| ());
         }
         Some(TrueState {
             rotor: self.seen.state(&self.of.kinematics(&state), time),
@@ -278,10 +276,8 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         self.to(steps);
         if fraction > 0.0 && self.given_up.is_none() {
             let told = &mut self.told;
-            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| told.take(&it);
-            self.of
-                .model
-                .part_step(&mut self.state, R::lit(fraction), take);
+            let (model, part) = (&self.of.model, R::lit(fraction));
+            model.part_step(&mut self.state, part, &mut |it| told.take(&it));
             self.farthest();
         }
         for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {

@@ -27,28 +27,18 @@ const TOO_SHORT: f64 = 1e-3;
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// One step. Bounded; cannot fail.
     pub fn step(&self, state: &mut CoupledState<R, N, Q>, mut on_event: impl FnMut(RingEvent<R>)) {
-        self.go(state, R::ONE, &mut on_event);
+        self.part_step(state, R::ONE, &mut on_event);
         state.tick += 1;
     }
 
-    /// The last part of a run: `fraction` of a step, below 1.
+    /// The last part of a run: `fraction` of a step, below 1. Built once, whatever is done with its events.
     pub fn part_step(
         &self,
         state: &mut CoupledState<R, N, Q>,
         fraction: R,
-        mut on_event: impl FnMut(RingEvent<R>),
-    ) {
-        self.go(state, fraction, &mut on_event);
-    }
-
-    /// Built once, whatever is done with its events.
-    fn go(
-        &self,
-        state: &mut CoupledState<R, N, Q>,
-        part: R,
         on_event: &mut dyn FnMut(RingEvent<R>),
     ) {
-        let whole = self.step * part;
+        let whole = self.step * fraction;
         let short = R::lit(TOO_SHORT) * self.step;
         let (mut left, mut longest, mut impacts) = (whole, whole, 0);
         let mut crossings = 0;

@@ -118,12 +118,6 @@ pub(super) const fn stop(ring: usize) -> usize {
 /// For each unknown: normal and friction of the contacts, normal of the stops.
 type Unknowns<T, const N: usize> = [[T; 3]; N];
 
-/// A linear system and its right side.
-struct System<R, const N: usize> {
-    rows: Unknowns<Unknowns<R, N>, N>,
-    right: Unknowns<R, N>,
-}
-
 impl<R: Real, const N: usize> Links<R, N> {
     pub(super) fn new() -> Self {
         Self {
@@ -277,17 +271,15 @@ impl<R: Real, const N: usize> Links<R, N> {
                 }
             }
         }
-        let mut system = System {
-            rows: [[[[R::ZERO; 3]; N]; 3]; N],
-            right: [[R::ZERO; 3]; N],
-        };
+        let mut rows = [[[[R::ZERO; 3]; N]; 3]; N];
+        let mut right = [[R::ZERO; 3]; N];
         let unknowns = &all.as_flattened()[..count];
-        let rows = system.rows.as_flattened_mut().iter_mut();
-        let rights = system.right.as_flattened_mut();
-        for ((row, right), unknown) in rows.zip(rights).zip(unknowns) {
+        let equations = rows.as_flattened_mut().iter_mut();
+        let equations = equations.zip(right.as_flattened_mut());
+        for ((row, right), unknown) in equations.zip(unknowns) {
             *right = self.fill(row.as_flattened_mut(), unknown, unknowns);
         }
-        let found = system.solved(count);
+        let found = solved(rows, right, count);
         for link in self.all() {
             (link.pressed, link.rubbed) = (R::ZERO, R::ZERO);
         }
@@ -381,55 +373,56 @@ impl<R: Real, const N: usize> Links<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> System<R, N> {
-    /// Solves the first `count` by elimination; unknowns that the others tell already are 0.
-    fn solved(mut self, count: usize) -> Unknowns<R, N> {
-        let rows = self.rows.as_flattened_mut();
-        let right = self.right.as_flattened_mut();
-        let mut largest = R::ZERO;
-        for row in rows.iter().take(count) {
-            for value in row.as_flattened().iter().take(count) {
-                largest = largest.most(value.abs());
+/// Solves the first `count` rows by elimination, to the right side; unknowns that the others tell already are 0.
+fn solved<R: Real, const N: usize>(
+    mut rows: Unknowns<Unknowns<R, N>, N>,
+    mut right: Unknowns<R, N>,
+    count: usize,
+) -> Unknowns<R, N> {
+    let (rows, right) = (rows.as_flattened_mut(), right.as_flattened_mut());
+    let mut largest = R::ZERO;
+    for row in rows.iter().take(count) {
+        for value in row.as_flattened().iter().take(count) {
+            largest = largest.most(value.abs());
+        }
+    }
+    let least = R::lit(TOLD) * R::EPSILON * largest;
+    let mut found = [[R::ZERO; 3]; N];
+    // Of each unknown, the row that tells it.
+    let mut told = [[None; 3]; N];
+    let mut next = 0;
+    for column in 0..count {
+        let at = |row: &Unknowns<R, N>| row[column / 3][column % 3];
+        let mut best = next;
+        for row in next..count {
+            if at(&rows[row]).abs() > at(&rows[best]).abs() {
+                best = row;
             }
         }
-        let least = R::lit(TOLD) * R::EPSILON * largest;
-        let mut found = [[R::ZERO; 3]; N];
-        // Of each unknown, the row that tells it.
-        let mut told = [[None; 3]; N];
-        let mut next = 0;
-        for column in 0..count {
-            let at = |row: &Unknowns<R, N>| row[column / 3][column % 3];
-            let mut best = next;
-            for row in next..count {
-                if at(&rows[row]).abs() > at(&rows[best]).abs() {
-                    best = row;
-                }
-            }
-            if next >= count || at(&rows[best]).abs() <= least {
+        if next >= count || at(&rows[best]).abs() <= least {
+            continue;
+        }
+        rows.swap(best, next);
+        right.swap(best, next);
+        let (pivot, pivot_right) = (rows[next], right[next]);
+        for index in 0..count {
+            let factor = at(&rows[index]) / at(&pivot);
+            if index == next || factor == R::ZERO {
                 continue;
             }
-            rows.swap(best, next);
-            right.swap(best, next);
-            let (pivot, pivot_right) = (rows[next], right[next]);
-            for index in 0..count {
-                let factor = at(&rows[index]) / at(&pivot);
-                if index == next || factor == R::ZERO {
-                    continue;
-                }
-                let values = rows[index].as_flattened_mut().iter_mut();
-                for (value, take) in values.zip(pivot.as_flattened()).take(count) {
-                    *value -= factor * *take;
-                }
-                right[index] -= factor * pivot_right;
+            let values = rows[index].as_flattened_mut().iter_mut();
+            for (value, take) in values.zip(pivot.as_flattened()).take(count) {
+                *value -= factor * *take;
             }
-            told[column / 3][column % 3] = Some(next);
-            next += 1;
+            right[index] -= factor * pivot_right;
         }
-        for column in 0..count {
-            if let Some(row) = told[column / 3][column % 3] {
-                found[column / 3][column % 3] = right[row] / rows[row][column / 3][column % 3];
-            }
-        }
-        found
+        told[column / 3][column % 3] = Some(next);
+        next += 1;
     }
+    for column in 0..count {
+        if let Some(row) = told[column / 3][column % 3] {
+            found[column / 3][column % 3] = right[row] / rows[row][column / 3][column % 3];
+        }
+    }
+    found
 }

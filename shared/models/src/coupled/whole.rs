@@ -35,7 +35,8 @@ impl<R: Precision, const N: usize, const Q: usize> Stepper<R> for Whole<R, N, Q>
     }
 
     fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        self.model.part_step(state, part, |it| on_event(it.event));
+        self.model
+            .part_step(state, part, &mut |it| on_event(it.event));
     }
 
     /// Of the centre of mass; turns are those of the ring that has most.
