@@ -43,8 +43,8 @@ pub fn random_drop(
     change(&mut mount, &mut random);
     let mut config = one(mount, step);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = restitution;
-    config.rings[0].ring.friction = 0.3;
+    config.rings[0].restitution = restitution;
+    config.rings[0].friction = 0.3;
     let start = Placement {
         velocity,
         ..Placement::default()

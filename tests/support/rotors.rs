@@ -1,20 +1,17 @@
 //! A rotor in its rings without units, for the coupled engine looked at from inside.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Placement, RingConfig, SeatConfig,
-    UnbalanceConfig,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Placement, RingConfig, UnbalanceConfig,
 };
 
 /// A rigid ring like the first at this place.
-pub fn ring(place: f64) -> SeatConfig<f64> {
-    SeatConfig {
-        ring: RingConfig {
-            place,
-            clearance: 1.0,
-            radius: 1.0,
-            friction: 0.0,
-            restitution: 1.0,
-        },
+pub fn ring(place: f64) -> RingConfig<f64> {
+    RingConfig {
+        place,
+        clearance: 1.0,
+        radius: 1.0,
+        friction: 0.0,
+        restitution: 1.0,
         compliant: None,
         mount: None,
         race: None,
@@ -25,7 +22,7 @@ pub fn ring(place: f64) -> SeatConfig<f64> {
 /// Mass, transverse inertia, gap, gravity and radius of 1 make the units those of the model; then the
 /// spin in V is in rad/T, and nutation is at `polar` times that.
 pub fn rotor<const N: usize>(
-    rings: [SeatConfig<f64>; N],
+    rings: [RingConfig<f64>; N],
     polar: f64,
     step: f64,
 ) -> CoupledConfig<f64, N> {

@@ -14,7 +14,7 @@ mod moreau;
 pub use coupled::{
     ActuatorConfig, BaseConfig, CompliantConfig, Coupled, CoupledConfig, CoupledEnergy,
     CoupledState, Load, ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion, RingConfig,
-    RingEvent, RingMotion, SeatConfig, StopConfig, UnbalanceConfig, Whole,
+    RingEvent, RingMotion, StopConfig, UnbalanceConfig, Whole,
 };
 pub use hertz::{Compliance, Contact, Hertz, HertzConfig, HertzState, Materials, Scheme, Shape};
 pub use moreau::{Moreau, MoreauState};

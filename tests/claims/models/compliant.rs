@@ -16,7 +16,7 @@ fn wall(shape: Shape, stiffness: f64) -> Option<CompliantConfig<f64>> {
 /// One ring at the centre of mass, no gravity.
 fn one(compliant: Option<CompliantConfig<f64>>, restitution: f64, step: f64) -> CoupledConfig<f64, 1> {
     let mut seat = ring(0.0);
-    seat.ring.restitution = restitution;
+    seat.restitution = restitution;
     seat.compliant = compliant;
     let mut config = rotor([seat], 0.4, step);
     config.gravity = [0.0; 2];
@@ -111,8 +111,8 @@ fn a_fall_ends_in_permanent_contact() {
     ] {
         let seats = [1.1, -0.7].map(|place| {
             let mut seat = ring(place);
-            seat.ring.restitution = 0.5;
-            seat.ring.friction = 0.15;
+            seat.restitution = 0.5;
+            seat.friction = 0.15;
             seat.compliant = wall(shape, STIFF);
             seat.mount = sprung.then_some(MountConfig {
                 mass: 0.1,

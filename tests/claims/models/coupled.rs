@@ -131,7 +131,7 @@ fn energy_and_angular_momentum_are_kept_in_bounces() {
 fn a_ring_at_the_centre_does_not_tilt_the_rotor() {
     for travel in [None, Some(0.15)] {
         let mut seat = ring(0.0);
-        (seat.ring.friction, seat.ring.restitution) = (0.15, 0.6);
+        (seat.friction, seat.restitution) = (0.15, 0.6);
         seat.mount = mount(0.1, 30.0, 0.8, travel);
         seat.race = race(0.02, 0.001, 0.002);
         let config = rotor([seat], 0.5, 1e-3);
@@ -166,7 +166,7 @@ fn contact_and_bending_are_of_second_order() {
     let at = |step: f64| {
         let mut config = two_ends(step);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution) = (0.02, 0.0);
+            (ring.friction, ring.restitution) = (0.02, 0.0);
             ring.mount = mount(0.1, 60.0, 1.0, None);
             ring.race = race(5.0, 0.0, 0.003);
         }
@@ -301,14 +301,14 @@ fn random(draw: &mut Draw) -> CoupledConfig<f64, 3> {
     let places = [1.0, -1.0, 0.2].map(|at| at * draw.between(0.1, 2.0));
     let mut config = rotor(places.map(ring), draw.between(0.01, 2.0), step);
     for ring in &mut config.rings {
-        ring.ring.clearance = draw.between(0.5, 2.0);
-        ring.ring.radius = draw.between(0.5, 2.0);
-        ring.ring.friction = if draw.yes() {
+        ring.clearance = draw.between(0.5, 2.0);
+        ring.radius = draw.between(0.5, 2.0);
+        ring.friction = if draw.yes() {
             draw.between(0.0, 0.4)
         } else {
             draw.decades(-2.0, 2.0)
         };
-        ring.ring.restitution = draw.part();
+        ring.restitution = draw.part();
         if draw.yes() {
             let travel = draw.yes().then(|| draw.between(0.05, 0.5));
             ring.mount = mount(
@@ -429,7 +429,7 @@ fn absent_parts_are_those_that_do_not_move() {
     let at = |stiff: bool| {
         let mut config = rotor([ring(1.2), ring(-0.7)], 0.4, 1e-3);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution) = (0.1, 0.5);
+            (ring.friction, ring.restitution) = (0.1, 0.5);
             if stiff {
                 ring.mount = mount(1.0, 1e12, 0.0, None);
                 ring.race = race(1e9, 0.0, 0.0);

@@ -98,7 +98,7 @@ fn a_ring_that_rubs_carries_the_rotor_at_rest() {
     for (friction, travels) in [(1.2, false), (0.3, true)] {
         let mut config = one(MountConfig { friction, damping: 4.0, ..MOUNT }, 2e-3);
         config.gravity = [0.0, -1.0];
-        config.rings[0].ring.restitution = 0.0;
+        config.rings[0].restitution = 0.0;
         let start = Placement { position: [0.0, -1.0], ..Placement::default() };
         let (model, state) = run(&config, &start, 8.0);
         let ring = model.ring(&state, 0);
@@ -163,8 +163,8 @@ fn dry_friction_holds_a_ring_that_is_pressed_onto_its_stop() {
     };
     let mut config = one(mount, 2e-3);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = 0.0;
-    config.rings[0].ring.friction = 0.3;
+    config.rings[0].restitution = 0.0;
+    config.rings[0].friction = 0.3;
     let start = Placement { position: [0.0, -1.0], ..Placement::default() };
     let model = built::<1, 2>(&config);
     let mut state = model.start(&start, 20.0, |_| {}).expect("valid");

@@ -66,7 +66,7 @@ fn spring_and_stop_carry_the_weight() {
     let mount = MountConfig { damping: 10.0, stop: Some(stop), ..MOUNT };
     let mut config = one(mount, 2e-3);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = 0.0;
+    config.rings[0].restitution = 0.0;
     let model = built::<1, 2>(&config);
     let start = Placement { position: [0.0, -1.0], ..Placement::default() };
     let mut state = model.start(&start, 0.0, |_| {}).expect("valid");

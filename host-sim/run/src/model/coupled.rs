@@ -14,7 +14,7 @@ use super::machine::{MachineDrop, OnStep};
 use super::parts::{ends, modelled_magnets, modelled_modes, seats, shape};
 use super::seen::{FollowedDrop, ModelRun};
 use super::{InNumbers, Numbers, Subject, in_numbers_of_rings, scaled};
-use touchdown_scene::scales::start_speed;
+use touchdown_scene::scales::config as plane;
 use touchdown_scene::{Fidelity, MODES, Removable, Scene};
 
 /// Coordinates of a rotor that only moves, that tilts too, and that bends too. Modes that a scene does not have
@@ -100,17 +100,8 @@ fn built<R: Precision, V: UseWhole, const N: usize, const Q: usize>(
 fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
     let rings = seats(scene).try_into();
     let mut config = CoupledConfig {
-        mass: scene.rotor.mass,
-        polar_inertia: scene.rotor.polar_inertia,
-        transverse_inertia: scene.rotor.polar_inertia,
         rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,
-        gravity: [0.0, -scene.run.gravity],
-        speed: start_speed(scene),
-        unbalance: UnbalanceConfig::default(),
-        magnets: [ActuatorConfig::default(); _],
-        base: None,
-        modes: [None; MODES],
-        step: scene.model.step,
+        ..CoupledConfig::of_plane(&plane(scene), [0.0; N])
     };
     let Some(machine) = ends(scene) else {
         return Ok(config);

@@ -63,7 +63,7 @@ struct Told<const N: usize> {
 impl<const N: usize> Told<N> {
     fn new(scene: &Scene, scales: &Scales<f64>) -> Self {
         let recorder = Recorder::new(-scene.first_sample_time());
-        let radii: Vec<f64> = seats(scene).iter().map(|it| it.ring.radius).collect();
+        let radii: Vec<f64> = seats(scene).iter().map(|it| it.radius).collect();
         Self {
             // Spin is told as surface speed in the ring.
             seen: std::array::from_fn(|ring| {
@@ -193,7 +193,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
         let peak_radius_m = radius * scales.length;
         let held = model.load(&self.state, ring).held_peak.to_f64() * unit / scales.length;
-        let seat = &seats(self.scene)[ring].ring;
+        let seat = &seats(self.scene)[ring];
         let materials = &self.scene.materials;
         let known = materials.given || model.is_compliant(ring);
         let pressure = || materials.pressure(held, seat.radius, seat.clearance);

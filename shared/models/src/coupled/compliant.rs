@@ -43,7 +43,7 @@ pub(super) struct Compliant<R> {
 }
 
 /// A contact, from its first to its last moment beyond the wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SoftContact<R> {
     pub(super) since: Instant<R>,
     /// Of the damping, over depth per time.
@@ -215,11 +215,7 @@ impl<R: Precision> Compliant<R> {
         SoftContact {
             since,
             rate: self.damping / speed.most(self.slowest),
-            stored: R::ZERO,
-            peak: R::ZERO,
-            impulse: R::ZERO,
-            leaves: false,
-            stays: false,
+            ..SoftContact::default()
         }
     }
 

@@ -24,21 +24,6 @@ pub(super) const MODES: usize = 3;
 /// (h/2)^2 times the stiffness that pulls away, over mass; at 1 the step has no solution.
 const STIFFEST: f64 = 0.25;
 
-/// A retainer ring and the rotor in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RingConfig<R> {
-    /// Axial place from the centre of mass, m.
-    pub place: R,
-    /// Radial clearance, m.
-    pub clearance: R,
-    /// Of the rotor there, m.
-    pub radius: R,
-    /// Coefficient of friction, 0 or more.
-    pub friction: R,
-    /// Restitution, 0 to 1.
-    pub restitution: R,
-}
-
 /// Static and couple unbalance; angles on the rotor, from its x axis at spin angle 0, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UnbalanceConfig<R> {
@@ -52,11 +37,19 @@ pub struct UnbalanceConfig<R> {
     pub skew_angle: R,
 }
 
-/// A retainer ring, what it stands on and what turns in it.
+/// A retainer ring, the rotor in it, what it stands on and what turns in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeatConfig<R> {
-    /// Place, gap and law.
-    pub ring: RingConfig<R>,
+pub struct RingConfig<R> {
+    /// Axial place from the centre of mass, m.
+    pub place: R,
+    /// Radial clearance, m.
+    pub clearance: R,
+    /// Of the rotor there, m.
+    pub radius: R,
+    /// Coefficient of friction, 0 or more.
+    pub friction: R,
+    /// Restitution, 0 to 1.
+    pub restitution: R,
     /// A wall that gives way; one with restitution without.
     pub compliant: Option<CompliantConfig<R>>,
     /// Spring and damper; a rigid seat without.
@@ -120,7 +113,7 @@ pub struct CoupledConfig<R, const N: usize> {
     /// About the centre of mass across the axis, kg m^2.
     pub transverse_inertia: R,
     /// 1 to 4; clearance and radius of the first set the scales.
-    pub rings: [SeatConfig<R>; N],
+    pub rings: [RingConfig<R>; N],
     /// Across the axis, m/s^2; 0 for a vertical machine.
     pub gravity: [R; 2],
     /// Typical speed, m/s: sets the scales where gravity is 0, else unused.
@@ -166,18 +159,16 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             radius: plane.radius,
             friction: plane.friction,
             restitution: plane.restitution,
+            compliant: None,
+            mount: None,
+            race: None,
+            shape: [R::ZERO; MODES],
         };
         Self {
             mass: plane.mass,
             polar_inertia: plane.polar_inertia,
             transverse_inertia: plane.polar_inertia,
-            rings: places.map(|place| SeatConfig {
-                ring: ring(place),
-                compliant: None,
-                mount: None,
-                race: None,
-                shape: [R::ZERO; MODES],
-            }),
+            rings: places.map(ring),
             gravity: [R::ZERO, -plane.gravity],
             speed: plane.speed,
             unbalance: UnbalanceConfig::default(),
@@ -199,8 +190,7 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
         if N > MOST_RINGS {
             return Err(ConfigError::OutOfRange("rings", "1 to 4"));
         }
-        for seat in &self.rings {
-            let ring = &seat.ring;
+        for ring in &self.rings {
             finite("place", &[ring.place])?;
             positive("clearance", ring.clearance)?;
             positive("radius", ring.radius)?;
@@ -209,7 +199,7 @@ impl<R: Precision, const N: usize> CoupledConfig<R, N> {
             if ring.restitution > R::ONE {
                 return Err(ConfigError::OutOfRange("restitution", "0 to 1"));
             }
-            finite("shape", &seat.shape)?;
+            finite("shape", &ring.shape)?;
         }
         finite("gravity", &self.gravity)?;
         let unbalance = &self.unbalance;
@@ -259,14 +249,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             return Err(ConfigError::OutOfRange("rings", "1 to 4"));
         };
         let pull = Vector::new(config.gravity).length();
-        let scales = Scales::try_new(first.ring.clearance, pull, first.ring.radius, config.speed)?;
+        let scales = Scales::try_new(first.clearance, pull, first.radius, config.speed)?;
         let arm = (config.transverse_inertia / config.mass).sqrt();
         let ratio = config.polar_inertia / config.transverse_inertia;
-        let radius = first.ring.radius;
+        let radius = first.radius;
         let size = scales.length / radius;
         let rate = scales.time * scales.time / scales.length;
         let mut model = Self {
-            // Each by its own seat below.
+            // Each by its own below.
             rings: [Ring::try_new([R::ZERO; Q], first, config, &scales)?; N],
             inertia_ratio: config.polar_inertia / config.mass / radius / radius,
             gyration: ratio * size,
@@ -294,9 +284,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 model.decay[k + 2] = R::TWO * mode.damping_ratio * mode.speed * scales.time;
             }
         }
-        for (k, seat) in config.rings.iter().enumerate() {
-            let shape = model.shape_at(seat.ring.place, seat.shape);
-            model.rings[k] = Ring::try_new(shape, seat, config, &scales)?;
+        for (k, ring) in config.rings.iter().enumerate() {
+            let shape = model.shape_at(ring.place, ring.shape);
+            model.rings[k] = Ring::try_new(shape, ring, config, &scales)?;
         }
         for k in 0..MAGNETS {
             let magnet = &config.magnets[k];
@@ -365,11 +355,11 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 impl<R: Precision, const Q: usize> Ring<R, Q> {
     fn try_new<const N: usize>(
         shape: [R; Q],
-        seat: &SeatConfig<R>,
+        ring: &RingConfig<R>,
         config: &CoupledConfig<R, N>,
         scales: &Scales<R>,
     ) -> Result<Self, ConfigError> {
-        let (ring, first) = (&seat.ring, &config.rings[0].ring);
+        let first = &config.rings[0];
         let units = Units {
             mass: config.mass,
             radius: first.radius,
@@ -387,9 +377,9 @@ impl<R: Precision, const Q: usize> Ring<R, Q> {
             surface: ring.radius / first.radius,
             friction: ring.friction,
             restitution: ring.restitution,
-            compliant: seat.compliant.as_ref().map(compliant).transpose()?,
-            mount: seat.mount.as_ref().map(mount).transpose()?,
-            race: seat.race.as_ref().map(race).transpose()?,
+            compliant: ring.compliant.as_ref().map(compliant).transpose()?,
+            mount: ring.mount.as_ref().map(mount).transpose()?,
+            race: ring.race.as_ref().map(race).transpose()?,
         })
     }
 }

@@ -32,7 +32,7 @@ mod whole;
 
 pub use compliant::CompliantConfig;
 pub use config::{
-    ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
+    ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, UnbalanceConfig,
 };
 pub use energy::CoupledEnergy;
 pub use mount::{MountConfig, StopConfig};

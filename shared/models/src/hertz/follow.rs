@@ -2,7 +2,6 @@
 
 use super::state::Touching;
 use super::{Hertz, HertzState, tell};
-use touchdown_rotor::clock::Instant;
 use touchdown_rotor::contact::{Grip, mode_of};
 use touchdown_rotor::kinematics::{Change, ModelEvent, Pulse};
 use touchdown_rotor::precision::Precision;
@@ -19,12 +18,8 @@ impl<R: Precision> Hertz<R> {
         on_event: &mut impl FnMut(ModelEvent<R>),
     ) -> HertzState<R> {
         let mut state = HertzState {
-            now: Instant::default(),
-            position: [Sum::new(R::ZERO); 2],
-            velocity: [Sum::new(R::ZERO); 2],
             spin: Sum::new(spin),
-            touching: None,
-            exceeded: 0,
+            ..HertzState::default()
         };
         match *start {
             Start::Free { position, velocity } => {
