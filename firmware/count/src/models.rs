@@ -102,18 +102,18 @@ fn ends<R: Precision>(step: u32) -> Whole<R, 2, 2> {
 
 /// From this place of the centre (m) and this slope (rad).
 fn started<R: Precision, const N: usize, const Q: usize>(
-    config: &CoupledConfig<f64, N>,
+    config: &CoupledConfig<N>,
     position: [f64; 2],
     slope: f64,
 ) -> Whole<R, N, Q> {
-    let model = Coupled::try_new(config).expect("a valid configuration");
+    let model = Coupled::<f64, N, Q>::try_new(config).expect("a valid configuration");
     let start = Placement {
         position: position.map(|x| x / model.scales().length),
         tilt: [0.0, slope / model.tilt_scale()],
         ..Placement::default()
     };
     Whole {
-        model: model.rounded(),
+        model: Coupled::try_new(config).expect("a valid configuration"),
         start: start.rounded(),
     }
 }

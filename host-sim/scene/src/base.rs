@@ -8,7 +8,7 @@ use super::rule::{Keys, MILLI};
 use super::{limits, list};
 
 /// A base that goes to and fro: by its amplitude times the cosine of an angle.
-pub type Base = BaseConfig<f64>;
+pub type Base = BaseConfig;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

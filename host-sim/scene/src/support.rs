@@ -14,9 +14,9 @@ const EDGE_ERROR: f64 = 0.004;
 const SPEED_WINDOW: f64 = 0.005;
 
 /// What the retainer ring stands on.
-pub type Support = MountConfig<f64>;
+pub type Support = MountConfig;
 /// A stop of a ring, without friction.
-pub type Stop = StopConfig<f64>;
+pub type Stop = StopConfig;
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,12 +9,12 @@ use touchdown_tests::rotors::{built, ring, rotor};
 /// Of a rotor of mass 1 at speed 1.
 const STIFF: f64 = 4e4;
 
-fn wall(shape: Shape, stiffness: f64) -> Option<CompliantConfig<f64>> {
+fn wall(shape: Shape, stiffness: f64) -> Option<CompliantConfig> {
     Some(CompliantConfig { shape, stiffness, balls: None, slowest: 1e-3 })
 }
 
 /// One ring at the centre of mass, no gravity.
-fn one(compliant: Option<CompliantConfig<f64>>, restitution: f64, step: f64) -> CoupledConfig<f64, 1> {
+fn one(compliant: Option<CompliantConfig>, restitution: f64, step: f64) -> CoupledConfig<1> {
     let mut seat = ring(0.0);
     seat.restitution = restitution;
     seat.compliant = compliant;
@@ -24,8 +24,8 @@ fn one(compliant: Option<CompliantConfig<f64>>, restitution: f64, step: f64) -> 
 }
 
 /// Into the wall at the bottom at speed 1; the pulse, the model and its state after it.
-fn strike<R: Precision>(config: &CoupledConfig<f64, 1>) -> (Pulse<f64>, Coupled<R, 1, 2>, CoupledState<R, 1, 2>) {
-    let model = built::<1, 2>(config).rounded::<R>();
+fn strike<R: Precision>(config: &CoupledConfig<1>) -> (Pulse<f64>, Coupled<R, 1, 2>, CoupledState<R, 1, 2>) {
+    let model = Coupled::<R, 1, 2>::try_new(config).expect("valid");
     let start = Placement { position: [0.0, -0.99], velocity: [0.0, -1.0], ..Placement::default() };
     let mut state = model.start(&start.rounded(), R::ZERO, |_| {}).expect("valid");
     let mut pulse = None;

@@ -9,7 +9,7 @@ const HEAVY: f64 = 2.0;
 /// Of the ring after a head-on impact of a rotor at speed 1 without loss.
 const KICKED: f64 = 2.0 / (1.0 + HEAVY);
 
-const MOUNT: MountConfig<f64> = MountConfig {
+const MOUNT: MountConfig = MountConfig {
     mass: HEAVY,
     stiffness: 18.0,
     damping: 0.0,
@@ -27,7 +27,7 @@ fn into_wall(direction: [f64; 2]) -> Placement<f64> {
     }
 }
 
-fn run(config: &CoupledConfig<f64, 1>, start: &Placement<f64>, time: f64) -> (Coupled<f64, 1, 2>, CoupledState<f64, 1, 2>) {
+fn run(config: &CoupledConfig<1>, start: &Placement<f64>, time: f64) -> (Coupled<f64, 1, 2>, CoupledState<f64, 1, 2>) {
     let model = built::<1, 2>(config);
     let mut state = model.start(start, 0.0, |_| {}).expect("valid");
     let first = model.energy(&state).total();

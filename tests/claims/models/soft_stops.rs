@@ -7,8 +7,8 @@ use touchdown_tests::rotors::built;
 /// Of the ring, over the rotor's: it is left behind by a rotor that bounces off it.
 const HEAVY: f64 = 2.0;
 const STIFFNESS: f64 = 18.0;
-const STOP: StopConfig<f64> = StopConfig { travel: 0.1, stiffness: Some(400.0) };
-const MOUNT: MountConfig<f64> = MountConfig {
+const STOP: StopConfig = StopConfig { travel: 0.1, stiffness: Some(400.0) };
+const MOUNT: MountConfig = MountConfig {
     mass: HEAVY,
     stiffness: STIFFNESS,
     damping: 0.0,

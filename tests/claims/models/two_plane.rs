@@ -344,7 +344,7 @@ fn a_vertical_rotor_drifts() {
 #[test]
 fn bad_values_are_refused_by_name() {
     let good = rotor([ring(1.0), ring(-1.0)], 0.4, 1e-3);
-    let name = |change: fn(&mut CoupledConfig<f64, 2>)| {
+    let name = |change: fn(&mut CoupledConfig<2>)| {
         let mut config = good;
         change(&mut config);
         let error: ConfigError = Coupled::<f64, 2, 2>::try_new(&config).expect_err("refused");

@@ -19,12 +19,12 @@ fn momentum<R: Precision, const N: usize>(state: &CoupledState<R, N, 2>, nutatio
 
 /// Largest change of energy (without the spin's) and of angular momentum, and the impacts.
 fn swing<R: Precision>(
-    config: &CoupledConfig<f64, 2>,
+    config: &CoupledConfig<2>,
     start: &Placement<f64>,
     spin: f64,
     steps: u32,
 ) -> (f64, f64, u32) {
-    let model = built::<2, 2>(config).rounded::<R>();
+    let model = Coupled::<R, 2, 2>::try_new(config).expect("valid");
     let mut impacts = 0;
     let mut state = model
         .start(&start.rounded(), R::lit(spin), |_| {})
@@ -281,7 +281,7 @@ fn single_precision_follows_double() {
         ..Placement::default()
     };
     let model = built::<2, 2>(&config);
-    let single = model.rounded::<f32>();
+    let single = Coupled::<f32, 2, 2>::try_new(&config).expect("valid");
     let mut a = model.start(&start, 40.0, |_| {}).expect("valid");
     let mut b = single
         .start(&start.rounded(), 40.0, |_| {})
@@ -305,7 +305,7 @@ fn single_precision_follows_double() {
 
 #[derive(Clone, Copy, Debug)]
 struct Case {
-    config: CoupledConfig<f64, 3>,
+    config: CoupledConfig<3>,
     spin: f64,
     start: Placement<f64>,
 }
@@ -339,9 +339,7 @@ prop_compose! {
 
 /// All stays finite, in the gap and within its energy.
 fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), TestCaseError> {
-    let model = Coupled::<f64, 3, 2>::try_new(&case.config)
-        .expect("valid")
-        .rounded::<R>();
+    let model = Coupled::<R, 3, 2>::try_new(&case.config).expect("valid");
     let Ok(mut state) = model.start(&case.start.rounded(), R::lit(case.spin), |_| {}) else {
         return Ok(());
     };

@@ -89,15 +89,16 @@ fn built<R: Precision, V: UseWhole, const N: usize, const Q: usize>(
     scene: &Scene,
     what: V,
 ) -> Result<V::Output<R>, ConfigError> {
-    let model = Coupled::<f64, N, Q>::try_new(&config::<N>(scene)?)?;
+    let config = config::<N>(scene)?;
+    let exact = Coupled::<f64, N, Q>::try_new(&config)?;
     let whole = Whole {
-        start: placement(scene, &model).rounded::<R>(),
-        model: model.rounded::<R>(),
+        start: placement(scene, &exact).rounded::<R>(),
+        model: Coupled::<R, N, Q>::try_new(&config)?,
     };
-    what.with(whole, *model.scales())
+    what.with(whole, *exact.scales())
 }
 
-fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
+fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<N>, ConfigError> {
     let rings = seats(scene).try_into();
     let mut config = CoupledConfig {
         rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,

@@ -36,7 +36,7 @@ pub(super) fn shape(scene: &Scene, place: f64) -> [f64; MODES] {
 }
 
 /// The retainer's rings with what the rung has of them.
-pub(super) fn seats(scene: &Scene) -> Vec<RingConfig<f64>> {
+pub(super) fn seats(scene: &Scene) -> Vec<RingConfig> {
     let whole = Ring::of_plane(scene);
     let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
     let turns = Removable::BallBearing;
@@ -62,7 +62,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<RingConfig<f64>> {
     rings.iter().map(seat).collect()
 }
 
-fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
+fn compliant(wall: CompliantWall) -> CompliantConfig {
     CompliantConfig {
         shape: wall.contact.shape(),
         stiffness: wall.stiffness,
@@ -71,7 +71,7 @@ fn compliant(wall: CompliantWall) -> CompliantConfig<f64> {
     }
 }
 
-fn race(bearing: BallBearing) -> RaceConfig<f64> {
+fn race(bearing: BallBearing) -> RaceConfig {
     RaceConfig {
         inertia: bearing.inertia,
         dry_drag: bearing.dry_drag,

@@ -11,7 +11,6 @@ use crate::hertz::{Shape, damping};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
-use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::positive;
 
 /// Newton's steps for the part of the depth that is not the balls': each doubles the digits.
@@ -19,15 +18,15 @@ const POLISHINGS: usize = 8;
 
 /// A wall that gives way, SI. The ring's restitution sets its damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompliantConfig<R> {
+pub struct CompliantConfig {
     /// How the force grows.
     pub shape: Shape,
     /// K, N/m^n.
-    pub stiffness: R,
+    pub stiffness: f64,
     /// Of balls and races, which give way with the wall, N/m; rigid without.
-    pub balls: Option<R>,
+    pub balls: Option<f64>,
     /// Speed up to which the damping is scaled by it and not by the contact's own, m/s.
-    pub slowest: R,
+    pub slowest: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,38 +56,25 @@ pub(super) struct SoftContact<R> {
     pub(super) stays: bool,
 }
 
-impl Compliant<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> Compliant<R> {
-        Compliant {
-            shape: self.shape,
-            stiffness: R::lit(self.stiffness),
-            balls: self.balls.map(R::lit),
-            damping: R::lit(self.damping),
-            slowest: R::lit(self.slowest),
-            gap: R::lit(self.gap),
-        }
-    }
-}
-
 impl<R: Precision> Compliant<R> {
     /// A spring that takes nothing: its stiffness per mass of the rotor, and the way to it.
-    pub(super) fn spring(stiffness: R, gap: R) -> Self {
+    pub(super) fn spring(stiffness: f64, gap: f64) -> Self {
         Self {
             shape: Shape::Spring,
-            stiffness,
+            stiffness: R::lit(stiffness),
             balls: None,
             damping: R::ZERO,
             slowest: R::ONE,
-            gap,
+            gap: R::lit(gap),
         }
     }
 
     /// `gap` is the ring's clearance over the first's.
     pub(super) fn try_new(
-        config: &CompliantConfig<R>,
-        restitution: R,
-        gap: R,
-        units: &Units<R>,
+        config: &CompliantConfig,
+        restitution: f64,
+        gap: f64,
+        units: &Units,
     ) -> Result<Self, ConfigError> {
         positive("stiffness", config.stiffness)?;
         positive("slowest", config.slowest)?;
@@ -96,18 +82,18 @@ impl<R: Precision> Compliant<R> {
         let spring = scales.length / scales.speed * (scales.length / scales.speed) / units.mass;
         let root = match config.shape {
             Shape::Point => scales.length.sqrt(),
-            _ => R::ONE,
+            _ => 1.0,
         };
         if let Some(balls) = config.balls {
             positive("balls", balls)?;
         }
         Ok(Self {
             shape: config.shape,
-            stiffness: config.stiffness * spring * root,
-            balls: config.balls.map(|it| it * spring),
-            damping: damping(restitution),
-            slowest: config.slowest / scales.speed,
-            gap,
+            stiffness: R::lit(config.stiffness * spring * root),
+            balls: config.balls.map(|it| R::lit(it * spring)),
+            damping: R::lit(damping(restitution)),
+            slowest: R::lit(config.slowest / scales.speed),
+            gap: R::lit(gap),
         })
     }
 

@@ -30,13 +30,6 @@ pub(super) struct Magnet<R, const Q: usize> {
     pub(super) on: Option<[Instant<R>; 2]>,
 }
 
-pub(super) fn rounded<R: Real>(moment: Instant<f64>) -> Instant<R> {
-    Instant {
-        tick: moment.tick,
-        fraction: R::lit(moment.fraction),
-    }
-}
-
 fn reached<R: Real>(moment: &Instant<R>, now: &Instant<R>) -> bool {
     let near = now.fraction + R::lit(REACHED) * R::EPSILON;
     moment.tick < now.tick || moment.tick == now.tick && moment.fraction <= near

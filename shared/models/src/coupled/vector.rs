@@ -88,6 +88,12 @@ impl<R: Real> Vector<R> {
     }
 }
 
+impl Vector<f64> {
+    pub(super) fn rounded<R: Real>(self) -> Vector<R> {
+        Vector::new(self.parts().map(R::lit))
+    }
+}
+
 impl<R: Real> Add for Vector<R> {
     type Output = Self;
 
