@@ -173,5 +173,5 @@ pub fn bearing(scene: &Scene, moving: Moving) -> Option<[f64; TACHOMETERS]> {
         return None;
     };
     let bearing = scene.ball_bearing?;
-    Some([race_angle, bearing.cage_ratio * race_angle])
+    Some([race_angle, bearing.race.cage_ratio * race_angle])
 }

@@ -1,7 +1,7 @@
 //! `[support]` and `[ball_bearing]`: a retainer ring that gives way and one that turns.
 
 use serde::Deserialize;
-use touchdown_models::{MountConfig, StopConfig};
+use touchdown_models::{MountConfig, RaceConfig, StopConfig};
 
 use super::diagnostic::Diagnostic;
 use super::limits;
@@ -21,18 +21,8 @@ pub type Stop = StopConfig;
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallBearing {
-    /// Of the inner ring and what turns with it, kg m^2.
-    pub inertia: f64,
-    /// Drag that does not depend on the speed, N m.
-    pub dry_drag: f64,
-    /// N m s.
-    pub viscous_drag: f64,
-    /// Speed of the cage over that of the inner ring.
-    pub cage_ratio: f64,
-    /// J/K.
-    pub heat_capacity: f64,
-    /// To the surroundings, W/K.
-    pub heat_loss: f64,
+    /// The inner ring, its drag and its heat.
+    pub race: RaceConfig,
     /// Of balls and races under a load, N/m; rigid without.
     pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
@@ -44,7 +34,7 @@ impl BallBearing {
     pub(super) fn tachometers(&self, bore_radius: f64) -> Option<Tachometers> {
         (self.marks != [None; 2]).then_some(Tachometers {
             marks: self.marks,
-            cage_ratio: self.cage_ratio,
+            cage_ratio: self.race.cage_ratio,
             bore_radius,
             edge_error: EDGE_ERROR,
             window: SPEED_WINDOW,
@@ -153,7 +143,7 @@ impl BallBearingTable {
                 KEYS.between(key, f64::from(marks), limits::MARKS)?;
             }
         }
-        Ok(BallBearing {
+        let race = RaceConfig {
             inertia: KEYS.within(
                 "inner_ring_inertia_kg_m2",
                 inertia,
@@ -164,6 +154,9 @@ impl BallBearingTable {
             cage_ratio: KEYS.between("cage_ratio", cage_ratio, limits::CAGE_RATIO)?,
             heat_capacity: KEYS.within("heat_capacity_j_k", capacity, limits::HEAT_CAPACITY_J_K)?,
             heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
+        };
+        Ok(BallBearing {
+            race,
             stiffness: self.stiffness_n_m.map(stiffness).transpose()?,
             marks: marks.map(|(_, marks)| marks),
         })

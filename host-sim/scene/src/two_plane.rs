@@ -99,13 +99,13 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
 }
 
 fn races(all: impl Iterator<Item = BallBearing>) -> Option<BallBearing> {
-    all.reduce(|a, b| BallBearing {
-        inertia: a.inertia + b.inertia,
-        dry_drag: a.dry_drag + b.dry_drag,
-        viscous_drag: a.viscous_drag + b.viscous_drag,
-        heat_capacity: a.heat_capacity + b.heat_capacity,
-        heat_loss: a.heat_loss + b.heat_loss,
-        ..a
+    all.reduce(|mut a, BallBearing { race: b, .. }| {
+        a.race.inertia += b.inertia;
+        a.race.dry_drag += b.dry_drag;
+        a.race.viscous_drag += b.viscous_drag;
+        a.race.heat_capacity += b.heat_capacity;
+        a.race.heat_loss += b.heat_loss;
+        a
     })
 }
 

@@ -198,9 +198,9 @@ fn coupled(scene: &Scene) -> CoupledReference {
 
 fn race(bearing: &touchdown_scene::BallBearing) -> Race {
     Race {
-        inertia: bearing.inertia,
-        dry_drag: bearing.dry_drag,
-        viscous_drag: bearing.viscous_drag,
+        inertia: bearing.race.inertia,
+        dry_drag: bearing.race.dry_drag,
+        viscous_drag: bearing.race.viscous_drag,
     }
 }
 

@@ -117,7 +117,7 @@ fn the_coast_down_of_vycon() {
         .rings
         .iter()
         .filter_map(|ring| ring.ball_bearing.as_ref());
-    let drag: f64 = bearings.map(|bearing| bearing.dry_drag).sum();
+    let drag: f64 = bearings.map(|bearing| bearing.race.dry_drag).sum();
     let hours = scene.rotor.polar_inertia * scene.rotor.spin / drag / 3600.0;
     row("vycon, h", 2.75, hours);
     assert_near(hours, 2.75, 0.03);

@@ -59,7 +59,7 @@ impl Path {
                 planes: state.sensed,
                 spin: state.rotor.spin,
                 levitated: false,
-                bearing: bearing.map(|(angle, it)| [angle, it.cage_ratio * angle]),
+                bearing: bearing.map(|(angle, it)| [angle, it.race.cage_ratio * angle]),
             }
         });
         let motions: Vec<_> = motions.collect();

@@ -2,6 +2,7 @@
 
 use super::extreme::free;
 use touchdown_base::input_error::InputError;
+use touchdown_models::RaceConfig;
 use touchdown_scene::{BallBearing, Model, Scene, Stop, Support};
 
 /// Longest part of a scene, s.
@@ -62,7 +63,7 @@ const EXTREMES: [(&str, Change); 20] = [
     ("inner ring held by drag", |s| {
         turning(s, 3e-5);
         if let Some(bearing) = &mut s.ball_bearing {
-            bearing.dry_drag = 1e3;
+            bearing.race.dry_drag = 1e3;
         }
     }),
 ];
@@ -77,12 +78,14 @@ fn on(scene: &mut Scene, change: impl Fn(&mut Support)) {
 fn turning(scene: &mut Scene, inertia: f64) {
     scene.support = None;
     scene.ball_bearing = Some(BallBearing {
-        inertia,
-        dry_drag: 0.005,
-        viscous_drag: 1e-5,
-        cage_ratio: 0.4,
-        heat_capacity: 50.0,
-        heat_loss: 0.5,
+        race: RaceConfig {
+            inertia,
+            dry_drag: 0.005,
+            viscous_drag: 1e-5,
+            cage_ratio: 0.4,
+            heat_capacity: 50.0,
+            heat_loss: 0.5,
+        },
         stiffness: None,
         marks: [None; 2],
     });

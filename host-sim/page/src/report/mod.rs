@@ -138,7 +138,7 @@ fn parts_that_move(whole: Window, scene: &Scene, outcome: &Outcome) -> Markup {
         @if let (true, Some(bearing)) = (race, &scene.ball_bearing) {
             section {
                 h2 { "Ball bearing" }
-                (moving::speeds(bearing.cage_ratio, whole, outcome))
+                (moving::speeds(bearing.race.cage_ratio, whole, outcome))
             }
         }
     }

@@ -1,10 +1,9 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
-use touchdown_models::{CompliantConfig, RaceConfig, RingConfig};
+use touchdown_models::{CompliantConfig, RingConfig};
 
 use touchdown_scene::{
-    BallBearing, CompliantWall, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, Support,
-    TwoPlane,
+    CompliantWall, Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, Support, TwoPlane,
 };
 
 /// The rotor's ends, where the rung has them.
@@ -56,7 +55,7 @@ pub(super) fn seats(scene: &Scene) -> Vec<RingConfig> {
                 stop: it.stop.filter(|_| has(Removable::Stop)),
                 ..it
             }),
-        race: ring.ball_bearing.filter(|_| has(turns)).map(race),
+        race: ring.ball_bearing.filter(|_| has(turns)).map(|it| it.race),
         shape: shape(scene, ring.place),
     };
     rings.iter().map(seat).collect()
@@ -68,16 +67,5 @@ fn compliant(wall: CompliantWall) -> CompliantConfig {
         stiffness: wall.stiffness,
         balls: wall.balls,
         slowest: wall.slowest,
-    }
-}
-
-fn race(bearing: BallBearing) -> RaceConfig {
-    RaceConfig {
-        inertia: bearing.inertia,
-        dry_drag: bearing.dry_drag,
-        viscous_drag: bearing.viscous_drag,
-        cage_ratio: bearing.cage_ratio,
-        heat_capacity: bearing.heat_capacity,
-        heat_loss: bearing.heat_loss,
     }
 }
