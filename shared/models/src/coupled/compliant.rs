@@ -11,6 +11,7 @@ use crate::hertz::{Shape, damping};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
+use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::positive;
 
 /// Newton's steps for the part of the depth that is not the balls': each doubles the digits.
@@ -81,7 +82,7 @@ impl<R: Precision> Compliant<R> {
         let scales = &units.scales;
         let spring = scales.length / scales.speed * (scales.length / scales.speed) / units.mass;
         let root = match config.shape {
-            Shape::Point => scales.length.sqrt(),
+            Shape::Point => Real::sqrt(scales.length),
             _ => 1.0,
         };
         if let Some(balls) = config.balls {
