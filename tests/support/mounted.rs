@@ -7,7 +7,7 @@ use touchdown_models::{Coupled, CoupledConfig, CoupledState, MountConfig, Placem
 use crate::rotors::{built, ring, rotor};
 
 /// One ring at the centre of mass on this mount, no gravity, no friction, no loss.
-pub fn one(mount: MountConfig<f64>, step: f64) -> CoupledConfig<f64, 1> {
+pub fn one(mount: MountConfig, step: f64) -> CoupledConfig<1> {
     let mut seat = ring(0.0);
     seat.mount = Some(mount);
     let mut config = rotor([seat], 0.4, step);
@@ -24,7 +24,7 @@ pub fn decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 /// long for it; `change` is the last to draw.
 pub fn random_drop(
     seed: u64,
-    change: impl FnOnce(&mut MountConfig<f64>, &mut ChaCha8Rng),
+    change: impl FnOnce(&mut MountConfig, &mut ChaCha8Rng),
 ) -> (Coupled<f64, 1, 2>, CoupledState<f64, 1, 2>) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut draw = |low, high| decades(&mut random, low, high);
@@ -43,8 +43,8 @@ pub fn random_drop(
     change(&mut mount, &mut random);
     let mut config = one(mount, step);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = restitution;
-    config.rings[0].ring.friction = 0.3;
+    config.rings[0].restitution = restitution;
+    config.rings[0].friction = 0.3;
     let start = Placement {
         velocity,
         ..Placement::default()

@@ -16,9 +16,9 @@ pub struct Fall {
     /// Rotor, gap and step.
     pub rigid: RigidConfig<f64>,
     /// None: the ring is fixed.
-    pub mount: Option<MountConfig<f64>>,
+    pub mount: Option<MountConfig>,
     /// None: a bushing.
-    pub race: Option<RaceConfig<f64>>,
+    pub race: Option<RaceConfig>,
     /// SI.
     pub start: reference::Start,
     /// rad/s.
@@ -134,7 +134,7 @@ impl Fall {
     /// # Panics
     /// If the configuration is not valid.
     pub fn follow<R: Precision>(&self, time: f64, mut each: impl FnMut(&Moment)) -> Vec<Told> {
-        let model = self.built().rounded::<R>();
+        let model = self.built::<R>();
         let scales = *model.scales();
         let [length, speed, spin] = [scales.length, scales.speed, scales.spin].map(R::to_f64);
         let (position, velocity) = match self.start {
@@ -182,7 +182,7 @@ impl Fall {
         told.into_inner()
     }
 
-    fn built(&self) -> Coupled<f64, 1, 1> {
+    fn built<R: Precision>(&self) -> Coupled<R, 1, 1> {
         let mut config = CoupledConfig::of_plane(&self.rigid, [0.0]);
         (config.rings[0].mount, config.rings[0].race) = (self.mount, self.race);
         Coupled::try_new(&config).expect("valid configuration")

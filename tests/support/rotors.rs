@@ -1,20 +1,17 @@
 //! A rotor in its rings without units, for the coupled engine looked at from inside.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Placement, RingConfig, SeatConfig,
-    UnbalanceConfig,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, Placement, RingConfig, UnbalanceConfig,
 };
 
 /// A rigid ring like the first at this place.
-pub fn ring(place: f64) -> SeatConfig<f64> {
-    SeatConfig {
-        ring: RingConfig {
-            place,
-            clearance: 1.0,
-            radius: 1.0,
-            friction: 0.0,
-            restitution: 1.0,
-        },
+pub fn ring(place: f64) -> RingConfig {
+    RingConfig {
+        place,
+        clearance: 1.0,
+        radius: 1.0,
+        friction: 0.0,
+        restitution: 1.0,
         compliant: None,
         mount: None,
         race: None,
@@ -24,11 +21,7 @@ pub fn ring(place: f64) -> SeatConfig<f64> {
 
 /// Mass, transverse inertia, gap, gravity and radius of 1 make the units those of the model; then the
 /// spin in V is in rad/T, and nutation is at `polar` times that.
-pub fn rotor<const N: usize>(
-    rings: [SeatConfig<f64>; N],
-    polar: f64,
-    step: f64,
-) -> CoupledConfig<f64, N> {
+pub fn rotor<const N: usize>(rings: [RingConfig; N], polar: f64, step: f64) -> CoupledConfig<N> {
     CoupledConfig {
         mass: 1.0,
         polar_inertia: polar,
@@ -45,13 +38,13 @@ pub fn rotor<const N: usize>(
 }
 
 /// The model of a valid configuration; `Q` coordinates, 2 of a rigid rotor that tilts.
-pub fn built<const N: usize, const Q: usize>(config: &CoupledConfig<f64, N>) -> Coupled<f64, N, Q> {
+pub fn built<const N: usize, const Q: usize>(config: &CoupledConfig<N>) -> Coupled<f64, N, Q> {
     Coupled::try_new(config).expect("valid configuration")
 }
 
 /// Runs for `time` T without a look at what happens.
 pub fn run<const N: usize>(
-    config: &CoupledConfig<f64, N>,
+    config: &CoupledConfig<N>,
     start: &Placement<f64>,
     spin: f64,
     time: f64,

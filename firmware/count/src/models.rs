@@ -1,8 +1,8 @@
 //! The drop of [`super::drop`] by every model but the rigid one.
 
 use touchdown_models::{
-    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
-    Point, RaceConfig, Scheme, StopConfig, Verlet, Whole,
+    Contact, Coupled, CoupledConfig, Hertz, HertzConfig, Materials, Moreau, MountConfig, Placement,
+    RaceConfig, Scheme, StopConfig, Whole,
 };
 use touchdown_rotor::Precision;
 
@@ -30,8 +30,8 @@ pub(super) fn in_plane<R: Precision>(counter: &Counter, table: &mut Table, name:
     }
     for step in SHORT_STEPS {
         let run = with_step(step);
-        run.of_hertz::<R, Euler>(table, "euler");
-        run.of_hertz::<R, Verlet>(table, "verlet");
+        run.of_hertz::<R>(table, "euler", Scheme::Euler);
+        run.of_hertz::<R>(table, "verlet", Scheme::Verlet);
     }
 }
 
@@ -55,16 +55,16 @@ pub(super) fn in_rings<R: Precision>(counter: &Counter, table: &mut Table, name:
 
 impl Run<'_> {
     /// Steel on steel.
-    fn of_hertz<R: Precision, S: Scheme>(&self, table: &mut Table, scheme: &str) {
+    fn of_hertz<R: Precision>(&self, table: &mut Table, name: &str, scheme: Scheme) {
         let config = HertzConfig {
             rigid: config(self.step),
             materials: Materials::steel(),
-            shape: Point,
+            contact: Contact::Point,
             fastest: FASTEST,
         };
-        let model = Hertz::<f64, Point, S>::try_new(&config).expect("a valid configuration");
-        self.of_model::<R, _>(&model.rounded::<R, Point>(), model.scales())
-            .write(table, "hertz", scheme, self);
+        let model = Hertz::try_new(&config, scheme).expect("a valid configuration");
+        self.of_model::<R, _>(&model.rounded(), model.scales())
+            .write(table, "hertz", name, self);
     }
 }
 
@@ -101,18 +101,18 @@ fn ends<R: Precision>(step: u32) -> Whole<R, 2, 2> {
 
 /// From this place of the centre (m) and this slope (rad).
 fn started<R: Precision, const N: usize, const Q: usize>(
-    config: &CoupledConfig<f64, N>,
+    config: &CoupledConfig<N>,
     position: [f64; 2],
     slope: f64,
 ) -> Whole<R, N, Q> {
-    let model = Coupled::try_new(config).expect("a valid configuration");
+    let model = Coupled::<f64, N, Q>::try_new(config).expect("a valid configuration");
     let start = Placement {
         position: position.map(|x| x / model.scales().length),
         tilt: [0.0, slope / model.tilt_scale()],
         ..Placement::default()
     };
     Whole {
-        model: model.rounded(),
+        model: Coupled::try_new(config).expect("a valid configuration"),
         start: start.rounded(),
     }
 }

@@ -7,8 +7,8 @@ use super::diagnostic::Diagnostic;
 use super::limits;
 use super::rule::{Keys, MILLI, exactly};
 
-/// A base that goes to and fro.
-pub type Base = BaseConfig<f64>;
+/// A base that goes to and fro: by its amplitude times the cosine of an angle.
+pub type Base = BaseConfig;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -3,35 +3,18 @@
 use std::f64::consts::PI;
 
 use serde::Deserialize;
+pub use touchdown_models::Contact;
 use touchdown_models::{CompliantConfig, Materials as Elastic};
 
 use super::diagnostic::Diagnostic;
 use super::limits;
 use super::rule::{Keys, MILLI};
 
-/// How rotor and retainer touch.
-#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
-#[strum(serialize_all = "kebab-case")]
-pub enum Contact {
-    /// Sphere in sphere.
-    Point,
-    /// Cylinder in ring, by the logarithm.
-    Line {
-        /// Axial, m.
-        length: f64,
-    },
-    /// The same as a spring.
-    LinePower {
-        /// Axial, m.
-        length: f64,
-    },
-}
-
 /// A wall that gives way, in place of restitution. The balls give way with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompliantWall {
     /// Its force over depth: K d^1.5 of a point, K d as a spring, K d/(ln(4 K c/F) - 1) of a line.
-    pub law: CompliantConfig<f64>,
+    pub law: CompliantConfig,
     /// Duration of the fastest impact, s.
     pub contact_time: f64,
 }

@@ -1,14 +1,12 @@
 //! What follows from a scene alone: its units, its fastest impact, how stiff its contact is.
 
 use touchdown_base::machine::Start;
-use touchdown_models::{
-    Compliance, CompliantConfig, CompliantShape, HertzConfig, Line, LinePower, Point, Shape,
-};
+use touchdown_models::{Compliance, CompliantConfig, HertzConfig};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 
 use crate::elastic::Validity;
-use crate::{CompliantWall, Contact, Ring, Scene, TwoPlane};
+use crate::{CompliantWall, Ring, Scene, TwoPlane};
 
 /// Part of the fastest impact's speed below which a contact's damping is no longer scaled by its own: it has 1e-6 of that
 /// impact's energy.
@@ -16,30 +14,7 @@ const SLOWEST: f64 = 1e-3;
 
 /// How stiff the scene's contact is.
 pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
-    pressed(scene, config(scene)).map(|(compliance, _)| compliance)
-}
-
-/// Depth by force over K and clearance, m.
-type Depth = fn(f64, f64) -> f64;
-
-/// How stiff the contact of another rotor in the scene is, and how deep it goes.
-fn pressed(
-    scene: &Scene,
-    rigid: RigidConfig<f64>,
-) -> Result<(Compliance<f64>, Depth), ConfigError> {
-    fn of<C: Shape<f64>>(
-        scene: &Scene,
-        rigid: RigidConfig<f64>,
-        shape: C,
-    ) -> Result<(Compliance<f64>, Depth), ConfigError> {
-        let config = compliant(scene, shape);
-        Ok((HertzConfig { rigid, ..config }.compliance()?, C::depth))
-    }
-    match scene.materials.contact {
-        Contact::Point => of(scene, rigid, Point),
-        Contact::Line { length } => of(scene, rigid, Line { length }),
-        Contact::LinePower { length } => of(scene, rigid, LinePower { length }),
-    }
+    compliant(scene).compliance()
 }
 
 /// How far the rotor is rigid in its contacts, in the ring where it is least; none where the scene does not
@@ -54,9 +29,9 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
     let rings = machine.rings.iter().map(|ring| ring.place / gyration);
     // An impact there meets 1/(1 + zeta^2) of the mass.
     let all = rings.filter_map(|zeta| {
-        let mut there = config(scene);
-        there.mass /= 1.0 + zeta * zeta;
-        let (compliance, _) = pressed(scene, there).ok()?;
+        let mut there = compliant(scene);
+        there.rigid.mass /= 1.0 + zeta * zeta;
+        let compliance = there.compliance().ok()?;
         Some(Validity::new(1.0 / compliance.contact_time, mode))
     });
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
@@ -69,26 +44,23 @@ pub(super) fn wall(
     machine: &TwoPlane,
     ring: &Ring,
 ) -> Result<CompliantWall, ConfigError> {
-    let mut there = config(scene);
+    let mut there = compliant(scene);
     let turned = ring.place * ring.place * scene.rotor.mass / machine.transverse_inertia;
-    there.mass /= 1.0 + turned;
-    there.radius = ring.radius;
-    there.clearance = ring.retainer.clearance;
-    let (compliance, depth) = pressed(scene, there)?;
+    there.rigid.mass /= 1.0 + turned;
+    there.rigid.radius = ring.radius;
+    there.rigid.clearance = ring.retainer.clearance;
+    let compliance = there.compliance()?;
     // A fall through the static compression: slower, the weight and not the impact decides.
     let weight = scene.rotor.mass * scene.run.gravity;
-    let settled = depth(weight / compliance.stiffness, ring.retainer.clearance);
+    let shape = there.contact.shape();
+    let settled = shape.depth(weight / compliance.stiffness, ring.retainer.clearance);
     let slowest = (2.0 * scene.run.gravity * settled).sqrt();
     Ok(CompliantWall {
         law: CompliantConfig {
-            shape: match scene.materials.contact {
-                Contact::Point => CompliantShape::Point,
-                Contact::Line { .. } => CompliantShape::Line,
-                Contact::LinePower { .. } => CompliantShape::LinePower,
-            },
+            shape,
             stiffness: compliance.stiffness,
             balls: ring.ball_bearing.and_then(|it| it.stiffness),
-            slowest: slowest.max(SLOWEST * fastest_impact(scene)),
+            slowest: slowest.max(SLOWEST * there.fastest),
         },
         contact_time: compliance.contact_time,
     })
@@ -100,12 +72,12 @@ pub(super) fn accurate_step(scene: &Scene) -> f64 {
     walls.fold(f64::INFINITY, |least, it| least.min(it.contact_time / 25.0))
 }
 
-/// Contact of the scene with the shape `shape`.
-pub fn compliant<C>(scene: &Scene, shape: C) -> HertzConfig<f64, C> {
+/// Contact of the scene.
+pub fn compliant(scene: &Scene) -> HertzConfig<f64> {
     HertzConfig {
         rigid: config(scene),
         materials: scene.materials.elastic,
-        shape,
+        contact: scene.materials.contact,
         fastest: fastest_impact(scene),
     }
 }

@@ -14,26 +14,19 @@ const EDGE_ERROR: f64 = 0.004;
 const SPEED_WINDOW: f64 = 0.005;
 
 /// What the retainer ring stands on.
-pub type Support = MountConfig<f64>;
-
+pub type Support = MountConfig;
 /// A stop of a ring, without friction.
-pub type Stop = StopConfig<f64>;
+pub type Stop = StopConfig;
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallBearing {
     /// Its inner ring, cage, drag and heat.
-    pub race: RaceConfig<f64>,
+    pub race: RaceConfig,
     /// Of balls and races under a load, N/m; rigid without.
     pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
     pub marks: [Option<u16>; 2],
-}
-
-/// Along x and along y: stiffness and damping.
-pub fn axes(mount: &Support) -> [[f64; 2]; 2] {
-    let along_x = [mount.stiffness, mount.damping];
-    [along_x, mount.vertical.unwrap_or(along_x)]
 }
 
 impl BallBearing {

@@ -9,7 +9,7 @@ use super::magnet::{Magnet, MagnetTable, all_magnets};
 use super::materials::CompliantWall;
 use super::mode::{Mode, ModeTable, all_modes};
 use super::rule::{Keys, MILLI, ON_THE_WALL, exactly, exactly_if_there};
-use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable, axes};
+use super::support::{BallBearing, BallBearingTable, Stop, Support, SupportTable};
 use super::{Retainer, Rotor, Scene, Start, limits};
 use touchdown_base::plain::Number;
 
@@ -87,7 +87,7 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
         stiffness: a.stiffness + b.stiffness,
         damping: a.damping + b.damping,
         vertical: (a.vertical.is_some() || b.vertical.is_some())
-            .then(|| [0, 1].map(|k| axes(&a)[1][k] + axes(&b)[1][k])),
+            .then(|| [0, 1].map(|k| a.axes()[1][k] + b.axes()[1][k])),
         friction: a.friction + b.friction,
         stop: match (a.stop, b.stop) {
             (Some(a), Some(b)) => Some(Stop {
@@ -100,16 +100,13 @@ fn mounts(all: impl Iterator<Item = Support>) -> Option<Support> {
 }
 
 fn races(all: impl Iterator<Item = BallBearing>) -> Option<BallBearing> {
-    all.reduce(|a, b| BallBearing {
-        race: RaceConfig {
-            inertia: a.race.inertia + b.race.inertia,
-            dry_drag: a.race.dry_drag + b.race.dry_drag,
-            viscous_drag: a.race.viscous_drag + b.race.viscous_drag,
-            heat_capacity: a.race.heat_capacity + b.race.heat_capacity,
-            heat_loss: a.race.heat_loss + b.race.heat_loss,
-            ..a.race
-        },
-        ..a
+    all.reduce(|mut a, BallBearing { race: b, .. }| {
+        a.race.inertia += b.inertia;
+        a.race.dry_drag += b.dry_drag;
+        a.race.viscous_drag += b.viscous_drag;
+        a.race.heat_capacity += b.heat_capacity;
+        a.race.heat_loss += b.heat_loss;
+        a
     })
 }
 
@@ -136,7 +133,7 @@ impl TwoPlane {
         let mounts = self.rings.iter().filter_map(|it| it.support);
         let mounts = mounts.flat_map(|it| {
             let stop = it.stop.and_then(|it| it.stiffness).unwrap_or(0.0);
-            axes(&it).map(|[spring, damper]| {
+            it.axes().map(|[spring, damper]| {
                 f64::max(((spring + stop) / it.mass).sqrt(), damper / it.mass)
             })
         });

@@ -12,12 +12,9 @@ mod hertz;
 mod moreau;
 
 pub use coupled::{
-    ActuatorConfig, BaseConfig, CompliantConfig, CompliantShape, Coupled, CoupledConfig,
-    CoupledEnergy, CoupledState, Load, ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion,
-    RingConfig, RingEvent, RingMotion, SeatConfig, StopConfig, UnbalanceConfig, Whole,
+    ActuatorConfig, BaseConfig, CompliantConfig, Coupled, CoupledConfig, CoupledEnergy,
+    CoupledState, Load, ModeConfig, MountConfig, Placement, RaceConfig, RaceMotion, RingConfig,
+    RingEvent, RingMotion, StopConfig, UnbalanceConfig, Whole,
 };
-pub use hertz::{
-    Compliance, Euler, Hertz, HertzConfig, HertzState, Line, LinePower, Materials, Pairing, Point,
-    Scheme, Shape, Verlet,
-};
+pub use hertz::{Compliance, Contact, Hertz, HertzConfig, HertzState, Materials, Scheme, Shape};
 pub use moreau::{Moreau, MoreauState};

@@ -1,7 +1,7 @@
 //! Walls that give way, in the coupled model: Hertz' closed forms, what is kept, and restitution.
 
 use touchdown_models::{
-    CompliantConfig, CompliantShape, Coupled, CoupledConfig, CoupledState, MountConfig, Placement, StopConfig,
+    CompliantConfig, Coupled, CoupledConfig, CoupledState, MountConfig, Placement, Shape, StopConfig,
 };
 use touchdown_rotor::{Change, Precision, Pulse};
 use touchdown_tests::rotors::{built, ring, rotor};
@@ -9,14 +9,14 @@ use touchdown_tests::rotors::{built, ring, rotor};
 /// Of a rotor of mass 1 at speed 1.
 const STIFF: f64 = 4e4;
 
-fn wall(shape: CompliantShape, stiffness: f64) -> Option<CompliantConfig<f64>> {
+fn wall(shape: Shape, stiffness: f64) -> Option<CompliantConfig> {
     Some(CompliantConfig { shape, stiffness, balls: None, slowest: 1e-3 })
 }
 
 /// One ring at the centre of mass, no gravity.
-fn one(compliant: Option<CompliantConfig<f64>>, restitution: f64, step: f64) -> CoupledConfig<f64, 1> {
+fn one(compliant: Option<CompliantConfig>, restitution: f64, step: f64) -> CoupledConfig<1> {
     let mut seat = ring(0.0);
-    seat.ring.restitution = restitution;
+    seat.restitution = restitution;
     seat.compliant = compliant;
     let mut config = rotor([seat], 0.4, step);
     config.gravity = [0.0; 2];
@@ -24,8 +24,8 @@ fn one(compliant: Option<CompliantConfig<f64>>, restitution: f64, step: f64) -> 
 }
 
 /// Into the wall at the bottom at speed 1; the pulse, the model and its state after it.
-fn strike<R: Precision>(config: &CoupledConfig<f64, 1>) -> (Pulse<f64>, Coupled<R, 1, 2>, CoupledState<R, 1, 2>) {
-    let model = built::<1, 2>(config).rounded::<R>();
+fn strike<R: Precision>(config: &CoupledConfig<1>) -> (Pulse<f64>, Coupled<R, 1, 2>, CoupledState<R, 1, 2>) {
+    let model = Coupled::<R, 1, 2>::try_new(config).expect("valid");
     let start = Placement { position: [0.0, -0.99], velocity: [0.0, -1.0], ..Placement::default() };
     let mut state = model.start(&start.rounded(), R::ZERO, |_| {}).expect("valid");
     let mut pulse = None;
@@ -55,7 +55,7 @@ fn a_point_contact_without_loss_is_hertz() {
     let time = 2.943_275_278_886_26 * (1.25 / STIFF).powf(0.4);
     let mut off = Vec::new();
     for parts in [25.0, 50.0, 100.0] {
-        let config = one(wall(CompliantShape::Point, STIFF), 1.0, time / parts);
+        let config = one(wall(Shape::Point, STIFF), 1.0, time / parts);
         let (pulse, model, state) = strike::<f64>(&config);
         let speed = state.centre().1[1];
         println!("T_c/{parts}: force {:.5}, time {:.5}, leaves at 1 - {:.1e}", pulse.peak_force / force, pulse.duration / time, 1.0 - speed);
@@ -75,7 +75,7 @@ fn a_damped_contact_leaves_with_its_restitution() {
     for restitution in [0.1, 0.4, 0.6, 0.8, 0.95] {
         let mut errors = Vec::new();
         for parts in [50.0, 100.0] {
-            let config = one(wall(CompliantShape::Point, STIFF), restitution, time / parts);
+            let config = one(wall(Shape::Point, STIFF), restitution, time / parts);
             let (_, model, state) = strike::<f64>(&config);
             let account = model.energy(&state).total() - 0.5;
             assert!(account.abs() < 1e-13, "{account:e}");
@@ -91,7 +91,7 @@ fn a_damped_contact_leaves_with_its_restitution() {
 fn balls_behind_a_spring_halve_its_stiffness() {
     for (balls, stiffness) in [(None, STIFF), (Some(STIFF), 0.5 * STIFF)] {
         let time = std::f64::consts::PI / stiffness.sqrt();
-        let compliant = wall(CompliantShape::LinePower, STIFF).map(|it| CompliantConfig { balls, ..it });
+        let compliant = wall(Shape::Spring, STIFF).map(|it| CompliantConfig { balls, ..it });
         let (pulse, model, state) = strike::<f64>(&one(compliant, 1.0, time / 200.0));
         println!("force {:.5}, time {:.5}", pulse.peak_force / stiffness.sqrt(), pulse.duration / time);
         assert!((pulse.peak_force / stiffness.sqrt() - 1.0).abs() < 1e-3);
@@ -105,14 +105,14 @@ fn balls_behind_a_spring_halve_its_stiffness() {
 #[test]
 fn a_fall_ends_in_permanent_contact() {
     for (shape, sprung) in [
-        (CompliantShape::Point, false),
-        (CompliantShape::Line, false),
-        (CompliantShape::Point, true),
+        (Shape::Point, false),
+        (Shape::Line, false),
+        (Shape::Point, true),
     ] {
         let seats = [1.1, -0.7].map(|place| {
             let mut seat = ring(place);
-            seat.ring.restitution = 0.5;
-            seat.ring.friction = 0.15;
+            seat.restitution = 0.5;
+            seat.friction = 0.15;
             seat.compliant = wall(shape, STIFF);
             seat.mount = sprung.then_some(MountConfig {
                 mass: 0.1,

@@ -4,8 +4,7 @@
 use proptest::prelude::*;
 use touchdown_base::history::Regime;
 use touchdown_models::{
-    Compliance, Euler, Hertz, HertzConfig, Line, LinePower, Materials, Point, Scheme as ContactScheme, Shape,
-    Verlet,
+    Compliance, Contact, Hertz, HertzConfig, Materials, Scheme as ContactScheme, Shape,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Precision, Pulse, RigidConfig, Start, Stepper};
@@ -21,7 +20,7 @@ const MASS: f64 = 3.42;
 const GAP: f64 = 0.3e-3;
 
 /// The rig of the paper without gravity.
-fn config<C>(shape: C, restitution: f64, step: f64) -> HertzConfig<f64, C> {
+fn config(contact: Contact, restitution: f64, step: f64) -> HertzConfig<f64> {
     HertzConfig {
         rigid: RigidConfig {
             mass: MASS,
@@ -35,7 +34,7 @@ fn config<C>(shape: C, restitution: f64, step: f64) -> HertzConfig<f64, C> {
             step,
         },
         materials: Materials::steel(),
-        shape,
+        contact,
         fastest: FALL,
     }
 }
@@ -52,16 +51,10 @@ struct Hit {
 
 /// The first impact at `speed` (in units of the fastest), released a part of a step away from the
 /// wall.
-fn hit<R, C, D, S>(config: &HertzConfig<f64, C>, speed: f64, phase: f64) -> Hit
-where
-    R: Precision,
-    C: Shape<f64>,
-    D: Shape<R>,
-    S: ContactScheme,
-{
-    let exact = Hertz::<f64, C, S>::try_new(config).expect("valid configuration");
+fn hit<R: Precision>(config: &HertzConfig<f64>, scheme: ContactScheme, speed: f64, phase: f64) -> Hit {
+    let exact = Hertz::<f64>::try_new(config, scheme).expect("valid configuration");
     let scales = *exact.scales();
-    let model = exact.rounded::<R, D>();
+    let model = exact.rounded::<R>();
     let step = config.rigid.step / scales.time;
     let path = step * speed;
     let whole = (1.0 / path).floor().min(20.0);
@@ -108,23 +101,23 @@ fn a_point_contact_has_the_force_and_duration_of_hertz() {
         let force = (v.powi(6) * MASS.powi(3) * radius * modulus * modulus / gap).powf(0.2);
         let force = 0.81145 * force;
         let time = 4.53398 * (MASS * MASS * gap / (v * radius * modulus * modulus)).powf(0.2);
-        let config = config(Point, 1.0, 0.26e-3 / 2000.0);
+        let config = config(Contact::Point, 1.0, 0.26e-3 / 2000.0);
         let both = [
             (
                 "euler",
-                hit::<f64, Point, Point, Euler>(&config, speed, 0.5),
+                hit::<f64>(&config, ContactScheme::Euler, speed, 0.5),
             ),
             (
                 "verlet",
-                hit::<f64, Point, Point, Verlet>(&config, speed, 0.5),
+                hit::<f64>(&config, ContactScheme::Verlet, speed, 0.5),
             ),
             (
                 "euler, f32",
-                hit::<f32, Point, Point, Euler>(&config, speed, 0.5),
+                hit::<f32>(&config, ContactScheme::Euler, speed, 0.5),
             ),
             (
                 "verlet, f32",
-                hit::<f32, Point, Point, Verlet>(&config, speed, 0.5),
+                hit::<f32>(&config, ContactScheme::Verlet, speed, 0.5),
             ),
         ];
         for (name, hit) in both {
@@ -136,14 +129,14 @@ fn a_point_contact_has_the_force_and_duration_of_hertz() {
             near("F0 T_c/(m V)", product, 3.6791, 2e-4);
         }
     }
-    let compliance = config(Point, 1.0, 1e-6).compliance().expect("valid");
+    let compliance = config(Contact::Point, 1.0, 1e-6).compliance().expect("valid");
     near("its own force, N", compliance.peak_force, 3741.0, 1e-3);
 }
 
 /// Half a period of a spring: pi sqrt(m/K), and V sqrt(K m).
 #[test]
 fn a_line_contact_by_the_power_law_is_a_spring() {
-    let shape = LinePower { length: 0.02 };
+    let shape = Contact::LinePower { length: 0.02 };
     let stiffness = config(shape, 1.0, 1e-6)
         .compliance()
         .expect("valid")
@@ -152,10 +145,10 @@ fn a_line_contact_by_the_power_law_is_a_spring() {
     for speed in [1.0, 0.1] {
         let config = config(shape, 1.0, time / 2000.0);
         for hit in [
-            hit::<f64, LinePower<f64>, LinePower<f64>, Euler>(&config, speed, 0.5),
-            hit::<f64, LinePower<f64>, LinePower<f64>, Verlet>(&config, speed, 0.5),
-            hit::<f32, LinePower<f64>, LinePower<f32>, Euler>(&config, speed, 0.5),
-            hit::<f32, LinePower<f64>, LinePower<f32>, Verlet>(&config, speed, 0.5),
+            hit::<f64>(&config, ContactScheme::Euler, speed, 0.5),
+            hit::<f64>(&config, ContactScheme::Verlet, speed, 0.5),
+            hit::<f32>(&config, ContactScheme::Euler, speed, 0.5),
+            hit::<f32>(&config, ContactScheme::Verlet, speed, 0.5),
         ] {
             let force = speed * FALL * (stiffness * MASS).sqrt();
             near("force, N", hit.peak_force, force, 2e-4);
@@ -178,15 +171,15 @@ fn a_line_contact_inverts_the_logarithm() {
     for part in [1e-12, 1e-9, 1e-6, 1e-3, 0.03, 0.3, 0.9, 0.999] {
         let force = part * most;
         let depth = approach(force) / GAP;
-        let [double, single] = [Line::power(depth, 1.0), f64::from(Line::power(depth as f32, 1.0))].map(|it| it * PLANE * GAP);
+        let [double, single] = [Shape::Line.power(depth, 1.0), f64::from(Shape::Line.power(depth as f32, 1.0))].map(|it| it * PLANE * GAP);
         println!("{part}: {:.1e}, {:.1e}", double / force - 1.0, single / force - 1.0);
         // The depth hardly rises near the end of the law: its digits give few of the force.
         let steep = 1.0 / (depth * PLANE * GAP / force - 1.0);
         near("f64", double, force, 4.0 * (1.0 + steep) * f64::EPSILON);
         near("f32", single, force, 4.0 * (1.0 + steep) * f64::from(f32::EPSILON));
-        near("and back", Line::depth(double / PLANE, GAP), depth * GAP, 1e-14);
+        near("and back", Shape::Line.depth(double / PLANE, GAP), depth * GAP, 1e-14);
     }
-    assert_eq!([Line::power(0.0, 1.0), Line::power(0.9, 1.0)], [0.0, 0.9]);
+    assert_eq!([Shape::Line.power(0.0, 1.0), Shape::Line.power(0.9, 1.0)], [0.0, 0.9]);
 }
 
 /// Its peak has the energy F^2/(2 K) (ln(4 K c/F) - 3/2) = m V^2/2, its duration is that of the reference's pulse.
@@ -202,21 +195,21 @@ fn a_line_contact_stops_the_rotor_by_the_logarithm() {
         let press = Press { shape: PressShape::Line { clearance: GAP }, stiffness: PLANE, balls: None, slowest: 0.0 };
         let pulse = Meeting { mass: MASS, speed, restitution: 1.0, press, gravity: 0.0 }.pulse();
         near("the reference's force, N", pulse.peak_force, high, 1e-6);
-        let shape = Line { length: 0.02 };
+        let shape = Contact::Line { length: 0.02 };
         let of = |step| HertzConfig { fastest: speed, ..config(shape, 1.0, step) };
         let compliance = of(1e-6).compliance().expect("valid");
         near("peak force, N", compliance.peak_force, high, 1e-12);
         near("duration, s", compliance.contact_time, pulse.duration, 1e-5);
         let fine = of(compliance.contact_time / 2000.0);
         for hit in [
-            hit::<f64, Line<f64>, Line<f64>, Euler>(&fine, speed / FALL, 0.5),
-            hit::<f64, Line<f64>, Line<f64>, Verlet>(&fine, speed / FALL, 0.5),
-            hit::<f32, Line<f64>, Line<f32>, Verlet>(&fine, speed / FALL, 0.5),
+            hit::<f64>(&fine, ContactScheme::Euler, speed / FALL, 0.5),
+            hit::<f64>(&fine, ContactScheme::Verlet, speed / FALL, 0.5),
+            hit::<f32>(&fine, ContactScheme::Verlet, speed / FALL, 0.5),
         ] {
             near("force, N", hit.peak_force, high, 2e-4);
             near("contact time, s", hit.duration, pulse.duration, 2e-4);
         }
-        let secant = config(LinePower { length: 0.02 }, 1.0, 1e-6).compliance().expect("valid");
+        let secant = config(Contact::LinePower { length: 0.02 }, 1.0, 1e-6).compliance().expect("valid");
         let spring = speed * (secant.stiffness * MASS).sqrt();
         println!("{speed} m/s: a spring, secant at {FALL:.4} m/s, has {:+.1} %", 1e2 * (spring / high - 1.0));
     }
@@ -225,13 +218,13 @@ fn a_line_contact_stops_the_rotor_by_the_logarithm() {
 /// The secant agrees with Johnson's logarithm at the peak force, and is stiffer below it.
 #[test]
 fn the_power_law_of_a_line_is_the_secant_of_the_logarithm() {
-    let shape = LinePower { length: 0.02 };
+    let shape = Contact::LinePower { length: 0.02 };
     let compliance = config(shape, 1.0, 1e-6).compliance().expect("valid");
     let peak = compliance.peak_force;
     near("depth, m", compliance.deepest, approach(peak), 1e-9);
     let below = approach(0.1 * peak) / (0.1 * peak / compliance.stiffness);
     near("log over linear at a tenth of the force", below, 1.36, 0.02);
-    let short = config(Line { length: 1e-7 }, 1.0, 1e-6).compliance();
+    let short = config(Contact::Line { length: 1e-7 }, 1.0, 1e-6).compliance();
     assert!(
         matches!(short, Err(ConfigError::OutOfRange("length", _))),
         "{short:?}"
@@ -242,22 +235,22 @@ fn the_power_law_of_a_line_is_the_secant_of_the_logarithm() {
 fn restitution_is_what_was_asked_for() {
     let time = |c: Result<Compliance<f64>, _>| c.expect("valid").contact_time;
     let (point, line) = (
-        time(config(Point, 1.0, 1e-6).compliance()),
-        time(config(Line { length: 0.02 }, 1.0, 1e-6).compliance()),
+        time(config(Contact::Point, 1.0, 1e-6).compliance()),
+        time(config(Contact::Line { length: 0.02 }, 1.0, 1e-6).compliance()),
     );
     for (parts, tolerance) in [(1000.0, 1e-4), (100.0, 1e-3), (25.0, 5e-3)] {
         let mut worst = 0.0_f64;
         for asked in [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.99] {
             for speed in [1.0, 0.3, 0.1, 0.01] {
                 for phase in [0.05, 0.5, 0.8] {
-                    let a = config(Point, asked, point / parts);
-                    let b = config(Line { length: 0.02 }, asked, line / parts);
+                    let a = config(Contact::Point, asked, point / parts);
+                    let b = config(Contact::Line { length: 0.02 }, asked, line / parts);
                     for hit in [
-                        hit::<f64, Point, Point, Euler>(&a, speed, phase),
-                        hit::<f64, Point, Point, Verlet>(&a, speed, phase),
-                        hit::<f32, Point, Point, Euler>(&a, speed, phase),
-                        hit::<f64, Line<f64>, Line<f64>, Euler>(&b, speed, phase),
-                        hit::<f64, Line<f64>, Line<f64>, Verlet>(&b, speed, phase),
+                        hit::<f64>(&a, ContactScheme::Euler, speed, phase),
+                        hit::<f64>(&a, ContactScheme::Verlet, speed, phase),
+                        hit::<f32>(&a, ContactScheme::Euler, speed, phase),
+                        hit::<f64>(&b, ContactScheme::Euler, speed, phase),
+                        hit::<f64>(&b, ContactScheme::Verlet, speed, phase),
                     ] {
                         worst = worst.max((hit.restitution / asked - 1.0).abs());
                         assert_eq!(hit.exceeded, 0);
@@ -269,7 +262,7 @@ fn restitution_is_what_was_asked_for() {
         assert!(worst <= tolerance, "T_c/{parts}: {worst:e}");
     }
     // Below the floor the rotor creeps out at the floor.
-    let hit = hit::<f64, Point, Point, Euler>(&config(Point, 0.0, 1e-7), 1.0, 0.5);
+    let hit = hit::<f64>(&config(Contact::Point, 0.0, 1e-7), ContactScheme::Euler, 1.0, 0.5);
     near("restitution for 0", hit.restitution, 0.02, 5e-3);
 }
 
@@ -292,10 +285,10 @@ fn unguarded(compliance: &Compliance<f64>, step: f64) -> f64 {
 
 #[test]
 fn a_step_above_the_limit_is_refused_and_would_blow_up() {
-    let compliance = config(Point, 1.0, 1e-6).compliance().expect("valid");
+    let compliance = config(Contact::Point, 1.0, 1e-6).compliance().expect("valid");
     let limit = compliance.longest_step();
     near("limit, s", limit, 128e-6, 2e-3);
-    let build = |step| Hertz::<f64, Point, Euler>::try_new(&config(Point, 1.0, step));
+    let build = |step| Hertz::<f64>::try_new(&config(Contact::Point, 1.0, step), ContactScheme::Euler);
     assert!(build(0.999 * limit).is_ok());
     assert!(matches!(
         build(1.001 * limit),
@@ -317,11 +310,11 @@ fn a_step_above_the_limit_is_refused_and_would_blow_up() {
 #[test]
 fn an_impact_beyond_expectation_gains_nothing() {
     for restitution in [1.0, 0.8, 0.2] {
-        let config = config(Point, restitution, 0.9 * 128e-6);
+        let config = config(Contact::Point, restitution, 0.9 * 128e-6);
         let mut exceeded = 0;
         for speed in [3.0, 10.0, 30.0] {
             for phase in [0.1, 0.4, 0.7] {
-                let hit = hit::<f64, Point, Point, Euler>(&config, speed, phase);
+                let hit = hit::<f64>(&config, ContactScheme::Euler, speed, phase);
                 assert!(hit.restitution <= 1.1 && hit.restitution > 0.0, "{hit:?}");
                 exceeded += hit.exceeded;
             }
@@ -383,13 +376,13 @@ proptest! {
         wall in any::<bool>(),
     ) {
         let motion = (friction, spin, if gravity { 9.81 } else { 0.0 });
-        finite::<_, Point>(config(Point, restitution, 1e-6), motion, part, angle, speed, wall)?;
-        finite::<_, Line<f32>>(config(Line { length: 0.02 }, restitution, 1e-6), motion, part, angle, speed, wall)?;
+        finite(config(Contact::Point, restitution, 1e-6), motion, part, angle, speed, wall)?;
+        finite(config(Contact::Line { length: 0.02 }, restitution, 1e-6), motion, part, angle, speed, wall)?;
     }
 }
 
-fn finite<C: Shape<f64>, D: Shape<f32>>(
-    mut config: HertzConfig<f64, C>,
+fn finite(
+    mut config: HertzConfig<f64>,
     (friction, spin, gravity): (f64, f64, f64),
     part: f64,
     angle: f64,
@@ -399,8 +392,8 @@ fn finite<C: Shape<f64>, D: Shape<f32>>(
     config.rigid.friction = friction;
     config.rigid.gravity = gravity;
     config.rigid.step = part * config.compliance().expect("valid").longest_step();
-    let exact = Hertz::<f64, C, Euler>::try_new(&config).expect("valid");
-    let model = exact.rounded::<f32, D>();
+    let exact = Hertz::<f64>::try_new(&config, ContactScheme::Euler).expect("valid");
+    let model = exact.rounded::<f32>();
     let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
     let start = if wall {
         Start::Wall { sin, cos, tangential: speed as f32 }

@@ -10,7 +10,7 @@ use touchdown_run::model::coupled::watch;
 use touchdown_scene::Scene;
 use touchdown_tests::rotors::{built, ring, rotor};
 
-fn mode(speed: f64, damping_ratio: f64, mass: f64) -> ModeConfig<f64> {
+fn mode(speed: f64, damping_ratio: f64, mass: f64) -> ModeConfig {
     ModeConfig {
         speed,
         damping_ratio,
@@ -19,7 +19,7 @@ fn mode(speed: f64, damping_ratio: f64, mass: f64) -> ModeConfig<f64> {
     }
 }
 
-fn mount(mass: f64, stiffness: f64, damping: f64, travel: Option<f64>) -> Option<MountConfig<f64>> {
+fn mount(mass: f64, stiffness: f64, damping: f64, travel: Option<f64>) -> Option<MountConfig> {
     Some(MountConfig {
         mass,
         stiffness,
@@ -30,7 +30,7 @@ fn mount(mass: f64, stiffness: f64, damping: f64, travel: Option<f64>) -> Option
     })
 }
 
-fn race(inertia: f64, dry_drag: f64, viscous_drag: f64) -> Option<RaceConfig<f64>> {
+fn race(inertia: f64, dry_drag: f64, viscous_drag: f64) -> Option<RaceConfig> {
     Some(RaceConfig {
         inertia,
         dry_drag,
@@ -42,7 +42,7 @@ fn race(inertia: f64, dry_drag: f64, viscous_drag: f64) -> Option<RaceConfig<f64
 }
 
 /// Two ends on springs, one bending mode.
-fn two_ends(step: f64) -> CoupledConfig<f64, 2> {
+fn two_ends(step: f64) -> CoupledConfig<2> {
     let mut rings = [ring(1.2), ring(-0.7)];
     for (ring, shape) in rings.iter_mut().zip([0.8, 1.1]) {
         ring.shape[0] = shape;
@@ -131,7 +131,7 @@ fn energy_and_angular_momentum_are_kept_in_bounces() {
 fn a_ring_at_the_centre_does_not_tilt_the_rotor() {
     for travel in [None, Some(0.15)] {
         let mut seat = ring(0.0);
-        (seat.ring.friction, seat.ring.restitution) = (0.15, 0.6);
+        (seat.friction, seat.restitution) = (0.15, 0.6);
         seat.mount = mount(0.1, 30.0, 0.8, travel);
         seat.race = race(0.02, 0.001, 0.002);
         let config = rotor([seat], 0.5, 1e-3);
@@ -166,7 +166,7 @@ fn contact_and_bending_are_of_second_order() {
     let at = |step: f64| {
         let mut config = two_ends(step);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution) = (0.02, 0.0);
+            (ring.friction, ring.restitution) = (0.02, 0.0);
             ring.mount = mount(0.1, 60.0, 1.0, None);
             ring.race = race(5.0, 0.0, 0.003);
         }
@@ -296,19 +296,19 @@ impl Draw {
     }
 }
 
-fn random(draw: &mut Draw) -> CoupledConfig<f64, 3> {
+fn random(draw: &mut Draw) -> CoupledConfig<3> {
     let step = draw.decades(-4.0, -1.5);
     let places = [1.0, -1.0, 0.2].map(|at| at * draw.between(0.1, 2.0));
     let mut config = rotor(places.map(ring), draw.between(0.01, 2.0), step);
     for ring in &mut config.rings {
-        ring.ring.clearance = draw.between(0.5, 2.0);
-        ring.ring.radius = draw.between(0.5, 2.0);
-        ring.ring.friction = if draw.yes() {
+        ring.clearance = draw.between(0.5, 2.0);
+        ring.radius = draw.between(0.5, 2.0);
+        ring.friction = if draw.yes() {
             draw.between(0.0, 0.4)
         } else {
             draw.decades(-2.0, 2.0)
         };
-        ring.ring.restitution = draw.part();
+        ring.restitution = draw.part();
         if draw.yes() {
             let travel = draw.yes().then(|| draw.between(0.05, 0.5));
             ring.mount = mount(
@@ -342,8 +342,8 @@ fn random(draw: &mut Draw) -> CoupledConfig<f64, 3> {
 }
 
 /// Farthest beyond a wall, greatest gain of stored energy and of the account, over the energy at the start.
-fn extremes<R: Precision>(config: &CoupledConfig<f64, 3>, spin: f64) -> Option<[f64; 3]> {
-    let model = Coupled::<f64, 3, 3>::try_new(config).ok()?.rounded::<R>();
+fn extremes<R: Precision>(config: &CoupledConfig<3>, spin: f64) -> Option<[f64; 3]> {
+    let model = Coupled::<R, 3, 3>::try_new(config).ok()?;
     let start = Placement {
         velocity: [0.3, -0.2],
         tilt_rate: [0.1, 0.2],
@@ -429,7 +429,7 @@ fn absent_parts_are_those_that_do_not_move() {
     let at = |stiff: bool| {
         let mut config = rotor([ring(1.2), ring(-0.7)], 0.4, 1e-3);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution) = (0.1, 0.5);
+            (ring.friction, ring.restitution) = (0.1, 0.5);
             if stiff {
                 ring.mount = mount(1.0, 1e12, 0.0, None);
                 ring.race = race(1e9, 0.0, 0.0);

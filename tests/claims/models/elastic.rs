@@ -1,10 +1,10 @@
 //! The validity line: the contact pulse's band against the rotor's first elastic mode.
 
-use touchdown_models::{HertzConfig, Materials, Point};
+use touchdown_models::{Contact, HertzConfig, Materials};
 use touchdown_rotor::RigidConfig;
 use touchdown_scene::elastic::{Validity, Verdict};
 
-fn rig() -> HertzConfig<f64, Point> {
+fn rig() -> HertzConfig<f64> {
     HertzConfig {
         rigid: RigidConfig {
             mass: 3.42,
@@ -18,7 +18,7 @@ fn rig() -> HertzConfig<f64, Point> {
             step: 1e-5,
         },
         materials: Materials::steel(),
-        shape: Point,
+        contact: Contact::Point,
         fastest: 0.076_720_271,
     }
 }

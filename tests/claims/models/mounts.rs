@@ -9,7 +9,7 @@ const HEAVY: f64 = 2.0;
 /// Of the ring after a head-on impact of a rotor at speed 1 without loss.
 const KICKED: f64 = 2.0 / (1.0 + HEAVY);
 
-const MOUNT: MountConfig<f64> = MountConfig {
+const MOUNT: MountConfig = MountConfig {
     mass: HEAVY,
     stiffness: 18.0,
     damping: 0.0,
@@ -27,7 +27,7 @@ fn into_wall(direction: [f64; 2]) -> Placement<f64> {
     }
 }
 
-fn run(config: &CoupledConfig<f64, 1>, start: &Placement<f64>, time: f64) -> (Coupled<f64, 1, 2>, CoupledState<f64, 1, 2>) {
+fn run(config: &CoupledConfig<1>, start: &Placement<f64>, time: f64) -> (Coupled<f64, 1, 2>, CoupledState<f64, 1, 2>) {
     let model = built::<1, 2>(config);
     let mut state = model.start(start, 0.0, |_| {}).expect("valid");
     let first = model.energy(&state).total();
@@ -98,7 +98,7 @@ fn a_ring_that_rubs_carries_the_rotor_at_rest() {
     for (friction, travels) in [(1.2, false), (0.3, true)] {
         let mut config = one(MountConfig { friction, damping: 4.0, ..MOUNT }, 2e-3);
         config.gravity = [0.0, -1.0];
-        config.rings[0].ring.restitution = 0.0;
+        config.rings[0].restitution = 0.0;
         let start = Placement { position: [0.0, -1.0], ..Placement::default() };
         let (model, state) = run(&config, &start, 8.0);
         let ring = model.ring(&state, 0);
@@ -163,8 +163,8 @@ fn dry_friction_holds_a_ring_that_is_pressed_onto_its_stop() {
     };
     let mut config = one(mount, 2e-3);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = 0.0;
-    config.rings[0].ring.friction = 0.3;
+    config.rings[0].restitution = 0.0;
+    config.rings[0].friction = 0.3;
     let start = Placement { position: [0.0, -1.0], ..Placement::default() };
     let model = built::<1, 2>(&config);
     let mut state = model.start(&start, 20.0, |_| {}).expect("valid");

@@ -7,8 +7,8 @@ use touchdown_tests::rotors::built;
 /// Of the ring, over the rotor's: it is left behind by a rotor that bounces off it.
 const HEAVY: f64 = 2.0;
 const STIFFNESS: f64 = 18.0;
-const STOP: StopConfig<f64> = StopConfig { travel: 0.1, stiffness: Some(400.0) };
-const MOUNT: MountConfig<f64> = MountConfig {
+const STOP: StopConfig = StopConfig { travel: 0.1, stiffness: Some(400.0) };
+const MOUNT: MountConfig = MountConfig {
     mass: HEAVY,
     stiffness: STIFFNESS,
     damping: 0.0,
@@ -66,7 +66,7 @@ fn spring_and_stop_carry_the_weight() {
     let mount = MountConfig { damping: 10.0, stop: Some(stop), ..MOUNT };
     let mut config = one(mount, 2e-3);
     config.gravity = [0.0, -1.0];
-    config.rings[0].ring.restitution = 0.0;
+    config.rings[0].restitution = 0.0;
     let model = built::<1, 2>(&config);
     let start = Placement { position: [0.0, -1.0], ..Placement::default() };
     let mut state = model.start(&start, 0.0, |_| {}).expect("valid");

@@ -125,9 +125,9 @@ fn the_inner_ring_spins_up_as_in_the_reference() {
 #[test]
 fn heat_is_what_friction_and_drag_took() {
     let mut scene = scene("ball-bearing", Precision::F64, 1e-5);
-    let bearing = scene.ball_bearing.as_mut().expect("a ball bearing");
-    bearing.race.heat_loss = 0.0;
-    let capacity = bearing.race.heat_capacity;
+    let race = &mut scene.ball_bearing.as_mut().expect("a ball bearing").race;
+    race.heat_loss = 0.0;
+    let capacity = race.heat_capacity;
     let ours = run(&scene).unwrap();
     let race = ours.ring.and_then(|ring| ring.race).expect("a race");
     let rise = race.temperature_rise_k;

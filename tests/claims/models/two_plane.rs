@@ -26,10 +26,10 @@ fn of_scene(scene: &Scene, step: f64) -> Coupled<f64, 1, 2> {
     config.mass = scene.rotor.mass;
     config.polar_inertia = scene.rotor.polar_inertia;
     config.transverse_inertia = scene.rotor.polar_inertia;
-    config.rings[0].ring.clearance = retainer.clearance;
-    config.rings[0].ring.radius = scene.rotor.radius;
-    config.rings[0].ring.friction = retainer.friction;
-    config.rings[0].ring.restitution = retainer.restitution;
+    config.rings[0].clearance = retainer.clearance;
+    config.rings[0].radius = scene.rotor.radius;
+    config.rings[0].friction = retainer.friction;
+    config.rings[0].restitution = retainer.restitution;
     config.gravity = [0.0, -scene.run.gravity];
     built(&config)
 }
@@ -43,8 +43,8 @@ fn a_symmetric_drop_is_the_drop_in_the_plane() {
         for (friction, spin) in [(0.1, -1390.0), (0.3, -20.0), (0.0, 50.0)] {
             let like = |place| {
                 let mut ring = ring(place);
-                (ring.ring.friction, ring.ring.restitution) = (friction, 0.8);
-                ring.ring.radius = 80.0;
+                (ring.friction, ring.restitution) = (friction, 0.8);
+                ring.radius = 80.0;
                 ring
             };
             let mut one = rotor([like(0.0)], 1.0, 1.8e-3);
@@ -266,8 +266,8 @@ fn unbalance_in_flight_follows_its_closed_form() {
 fn tilted_ends_land_at_their_times() {
     for (tilt, near, far) in [(0.3, 0.7, 1.8), (-0.2, 1.2, 0.4), (0.05, 2.0, 2.0)] {
         let mut config = rotor([ring(near), ring(-far)], 0.4, 1e-3);
-        config.rings[0].ring.restitution = 0.0;
-        config.rings[1].ring.clearance = 1.3;
+        config.rings[0].restitution = 0.0;
+        config.rings[1].clearance = 1.3;
         let model = built::<2, 2>(&config);
         let start = Placement {
             tilt: [0.0, tilt],
@@ -303,7 +303,7 @@ fn an_impact_reaches_the_other_end_by_its_mobility() {
     for zeta in [0.5, 1.0, 2.5] {
         let mut config = rotor([ring(zeta)], 0.4, 1e-3);
         config.gravity = [0.0; 2];
-        config.rings[0].ring.restitution = 0.7;
+        config.rings[0].restitution = 0.7;
         let start = Placement {
             position: [0.0, -0.5],
             velocity: [0.0, -0.6],
@@ -344,7 +344,7 @@ fn a_vertical_rotor_drifts() {
 #[test]
 fn bad_values_are_refused_by_name() {
     let good = rotor([ring(1.0), ring(-1.0)], 0.4, 1e-3);
-    let name = |change: fn(&mut CoupledConfig<f64, 2>)| {
+    let name = |change: fn(&mut CoupledConfig<2>)| {
         let mut config = good;
         change(&mut config);
         let error: ConfigError = Coupled::<f64, 2, 2>::try_new(&config).expect_err("refused");
@@ -356,9 +356,9 @@ fn bad_values_are_refused_by_name() {
         name(|c| c.transverse_inertia = f64::NAN),
         "transverse_inertia"
     );
-    assert_eq!(name(|c| c.rings[1].ring.clearance = -1.0), "clearance");
-    assert_eq!(name(|c| c.rings[1].ring.restitution = 1.1), "restitution");
-    assert_eq!(name(|c| c.rings[0].ring.place = f64::INFINITY), "place");
+    assert_eq!(name(|c| c.rings[1].clearance = -1.0), "clearance");
+    assert_eq!(name(|c| c.rings[1].restitution = 1.1), "restitution");
+    assert_eq!(name(|c| c.rings[0].place = f64::INFINITY), "place");
     assert_eq!(name(|c| c.gravity[0] = f64::NAN), "gravity");
     assert_eq!(name(|c| c.unbalance.skew = f64::NAN), "unbalance");
     assert_eq!(name(|c| c.magnets[1].force[0] = f64::NAN), "magnets");

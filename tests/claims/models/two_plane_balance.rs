@@ -19,12 +19,12 @@ fn momentum<R: Precision, const N: usize>(state: &CoupledState<R, N, 2>, nutatio
 
 /// Largest change of energy (without the spin's) and of angular momentum, and the impacts.
 fn swing<R: Precision>(
-    config: &CoupledConfig<f64, 2>,
+    config: &CoupledConfig<2>,
     start: &Placement<f64>,
     spin: f64,
     steps: u32,
 ) -> (f64, f64, u32) {
-    let model = built::<2, 2>(config).rounded::<R>();
+    let model = Coupled::<R, 2, 2>::try_new(config).expect("valid");
     let mut impacts = 0;
     let mut state = model
         .start(&start.rounded(), R::lit(spin), |_| {})
@@ -101,7 +101,7 @@ fn a_held_ring_does_no_work_without_friction() {
     for (step, polar) in [(1e-3, 0.4), (0.02, 0.4), (1e-3, 2.0)] {
         let mut config = rotor([ring(1.2), ring(-0.7)], polar, step);
         for ring in &mut config.rings {
-            ring.ring.restitution = 0.0;
+            ring.restitution = 0.0;
         }
         let start = Placement {
             position: [0.0, -0.9],
@@ -147,9 +147,9 @@ fn the_ledger_closes() {
         for step in [1e-3, 1e-2] {
             let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, step);
             for ring in &mut config.rings {
-                (ring.ring.friction, ring.ring.restitution) = (friction, 0.6);
+                (ring.friction, ring.restitution) = (friction, 0.6);
             }
-            config.rings[1].ring.clearance = 0.8;
+            config.rings[1].clearance = 0.8;
             config.magnets[0] = ActuatorConfig {
                 place: 0.9,
                 stiffness: 0.3,
@@ -186,7 +186,7 @@ fn the_ledger_closes() {
 fn the_ledger_closes_with_unbalance() {
     let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, 1e-3);
     for ring in &mut config.rings {
-        (ring.ring.friction, ring.ring.restitution) = (0.2, 0.6);
+        (ring.friction, ring.restitution) = (0.2, 0.6);
     }
     config.unbalance.eccentricity = 0.02;
     config.unbalance.skew = 0.01;
@@ -210,7 +210,7 @@ fn whirl_without_gravity_grows_by_its_law() {
     let off = |step: f64| {
         let mut config = rotor([ring(0.0)], 0.5, step);
         config.gravity = [0.0; 2];
-        config.rings[0].ring.friction = 0.1;
+        config.rings[0].friction = 0.1;
         let start = Placement {
             position: [0.0, -1.0],
             velocity: [1.0, 0.0],
@@ -235,7 +235,7 @@ fn contact_is_of_second_order() {
     let end = |step: f64| {
         let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, step);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution) = (0.0, 0.0);
+            (ring.friction, ring.restitution) = (0.0, 0.0);
         }
         // Both on the wall, one end 0.2 rad further round.
         let (a, b) = (
@@ -274,14 +274,14 @@ fn contact_is_of_second_order() {
 fn single_precision_follows_double() {
     let mut config = rotor([ring(1.2), ring(-0.7)], 0.5, 1.8e-3);
     for ring in &mut config.rings {
-        (ring.ring.friction, ring.ring.restitution) = (0.1, 0.5);
+        (ring.friction, ring.restitution) = (0.1, 0.5);
     }
     let start = Placement {
         tilt: [0.1, -0.2],
         ..Placement::default()
     };
     let model = built::<2, 2>(&config);
-    let single = model.rounded::<f32>();
+    let single = Coupled::<f32, 2, 2>::try_new(&config).expect("valid");
     let mut a = model.start(&start, 40.0, |_| {}).expect("valid");
     let mut b = single
         .start(&start.rounded(), 40.0, |_| {})
@@ -305,7 +305,7 @@ fn single_precision_follows_double() {
 
 #[derive(Clone, Copy, Debug)]
 struct Case {
-    config: CoupledConfig<f64, 3>,
+    config: CoupledConfig<3>,
     spin: f64,
     start: Placement<f64>,
 }
@@ -325,9 +325,9 @@ prop_compose! {
                -> Case {
         let mut config = rotor(places.map(ring), polar, step);
         for ring in &mut config.rings {
-            (ring.ring.friction, ring.ring.restitution, ring.ring.radius) = (friction, restitution, 1.0);
+            (ring.friction, ring.restitution, ring.radius) = (friction, restitution, 1.0);
         }
-        config.rings[2].ring.clearance = clearance;
+        config.rings[2].clearance = clearance;
         config.gravity = gravity;
         config.magnets[0] = ActuatorConfig { place: 1.0, stiffness, force: [0.0, 0.1], ..ActuatorConfig::default() };
         Case { config, spin, start: Placement {
@@ -339,9 +339,7 @@ prop_compose! {
 
 /// All stays finite, in the gap and within its energy.
 fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), TestCaseError> {
-    let model = Coupled::<f64, 3, 2>::try_new(&case.config)
-        .expect("valid")
-        .rounded::<R>();
+    let model = Coupled::<R, 3, 2>::try_new(&case.config).expect("valid");
     let Ok(mut state) = model.start(&case.start.rounded(), R::lit(case.spin), |_| {}) else {
         return Ok(());
     };
@@ -366,7 +364,7 @@ fn check<R: Precision>(case: &Case, steps: u32, rounding: f64) -> Result<(), Tes
             let at = model.kinematics_at(&state, k);
             let [x, y] = at.position.map(R::to_f64);
             let [u, v] = at.velocity.map(R::to_f64);
-            let beyond = x.hypot(y) - ring.ring.clearance;
+            let beyond = x.hypot(y) - ring.clearance;
             let speed = u.hypot(v);
             // Beyond its wall until the end of the step that turned it round.
             let path = case.config.step * (speed.max(speeds[k]) + case.config.step);

@@ -85,15 +85,16 @@ fn in_parts<R: Precision>(scene: &Scene) -> Result<Box<dyn AnyWhole<R>>, ConfigE
 fn built<R: Precision, const N: usize, const Q: usize>(
     scene: &Scene,
 ) -> Result<Box<dyn AnyWhole<R>>, ConfigError> {
-    let model = Coupled::<f64, N, Q>::try_new(&config::<N>(scene)?)?;
+    let config = config::<N>(scene)?;
+    let exact = Coupled::<f64, N, Q>::try_new(&config)?;
     let whole = Whole {
-        start: placement(scene, &model).rounded::<R>(),
-        model: model.rounded::<R>(),
+        start: placement(scene, &exact).rounded::<R>(),
+        model: Coupled::<R, N, Q>::try_new(&config)?,
     };
-    Ok(Box::new(Built(whole, *model.scales())))
+    Ok(Box::new(Built(whole, *exact.scales())))
 }
 
-fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<f64, N>, ConfigError> {
+fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<N>, ConfigError> {
     let rings = seats(scene).try_into();
     let mut config = CoupledConfig {
         rings: rings.map_err(|_| ConfigError::OutOfRange("rings", "1 to 4"))?,

@@ -63,7 +63,7 @@ struct Told<const N: usize> {
 impl<const N: usize> Told<N> {
     fn new(scene: &Scene, scales: &Scales<f64>) -> Self {
         let recorder = Recorder::new(-scene.first_sample_time());
-        let radii: Vec<f64> = seats(scene).iter().map(|it| it.ring.radius).collect();
+        let radii: Vec<f64> = seats(scene).iter().map(|it| it.radius).collect();
         Self {
             // Spin is told as surface speed in the ring.
             seen: std::array::from_fn(|ring| {
@@ -123,7 +123,8 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             return;
         }
         let before = self.race_spins(&self.state);
-        let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| self.told.take(&it);
+        let told = &mut self.told;
+        let take = |it| told.take(&it);
         self.of.model.step(&mut self.state, take);
         let after = self.race_spins(&self.state);
         for (turned, (a, b)) in self.turned.iter_mut().zip(before.iter().zip(after)) {
@@ -192,7 +193,7 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
         let peak_radius_m = radius * scales.length;
         let held = model.load(&self.state, ring).held_peak.to_f64() * unit / scales.length;
-        let seat = &seats(self.scene)[ring].ring;
+        let seat = &seats(self.scene)[ring];
         let materials = &self.scene.materials;
         let known = materials.given || model.is_compliant(ring);
         let pressure = || materials.pressure(held, seat.radius, seat.clearance);
@@ -256,9 +257,8 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         let mut state = self.state;
         if fraction > 0.0 {
-            let (model, fraction) = (&self.of.model, R::lit(fraction));
-            let ignore: &mut dyn FnMut(RingEvent<R>) = &mut |_| ();
-            model.part_step(&mut state, fraction, ignore);
+            let (model, part) = (&self.of.model, R::lit(fraction));
+            model.part_step(&mut state, part, &mut |_| ());
         }
         Some(TrueState {
             rotor: self.seen.state(&self.of.kinematics(&state), time),
@@ -273,9 +273,9 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         let (steps, fraction) = self.steps(scene.run.duration);
         self.to(steps);
         if fraction > 0.0 && self.given_up.is_none() {
-            let model = &self.of.model;
-            let take: &mut dyn FnMut(RingEvent<R>) = &mut |it| self.told.take(&it);
-            model.part_step(&mut self.state, R::lit(fraction), take);
+            let told = &mut self.told;
+            let (model, part) = (&self.of.model, R::lit(fraction));
+            model.part_step(&mut self.state, part, &mut |it| told.take(&it));
             self.farthest();
         }
         for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {

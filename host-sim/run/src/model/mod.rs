@@ -24,7 +24,7 @@ use boxed::Boxed;
 pub use plane::{follow, run, simulate, simulate_to_verdict};
 pub use seen::{ModelRun, RaceEnd, RingEnd, steps_of_run};
 
-use touchdown_models::{Euler, Hertz, Line, LinePower, Moreau, Point, Shape, Verlet};
+use touchdown_models::{Hertz, Moreau, Scheme};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::{Micro32, Poly32};
 use touchdown_rotor::scales::Scales;
@@ -32,7 +32,7 @@ use touchdown_rotor::{Precision, Rigid, Start as ScaledStart, Stepper};
 
 use touchdown_base::machine::Start;
 use touchdown_scene::scales::{compliant, config};
-use touchdown_scene::{Contact, Fidelity, Scene, Scheme};
+use touchdown_scene::{Fidelity, Scene};
 
 /// What is done with a model, whatever its rung and numbers.
 pub trait Use {
@@ -104,39 +104,16 @@ fn in_plane<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigE
             let model = Moreau::try_new(&config(scene))?;
             Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
         }
-        Fidelity::Hertz => hertz(scene),
+        Fidelity::Hertz => {
+            let scheme = match scene.model.scheme {
+                touchdown_scene::Scheme::Verlet => Scheme::Verlet,
+                _ => Scheme::Euler,
+            };
+            let model = Hertz::try_new(&compliant(scene), scheme)?;
+            Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
+        }
         _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
     }
-}
-
-fn hertz<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
-    match scene.materials.contact {
-        Contact::Point => in_scheme::<R, Point, Point>(scene, Point),
-        Contact::Line { length } => in_scheme::<R, Line<f64>, Line<R>>(scene, Line { length }),
-        Contact::LinePower { length } => {
-            in_scheme::<R, LinePower<f64>, LinePower<R>>(scene, LinePower { length })
-        }
-    }
-}
-
-/// `D` is the shape `C` in the numbers `R`.
-fn in_scheme<R, C, D>(scene: &Scene, shape: C) -> Result<Subject<R, Boxed<R>>, ConfigError>
-where
-    R: Precision,
-    C: Shape<f64>,
-    D: Shape<R> + 'static,
-{
-    let config = compliant(scene, shape);
-    Ok(match scene.model.scheme {
-        Scheme::Verlet => {
-            let model = Hertz::<f64, C, Verlet>::try_new(&config)?;
-            boxed(scene, model.rounded::<R, D>(), *model.scales())
-        }
-        _ => {
-            let model = Hertz::<f64, C, Euler>::try_new(&config)?;
-            boxed(scene, model.rounded::<R, D>(), *model.scales())
-        }
-    })
 }
 
 fn subject<R: Precision, M: Stepper<R>>(

@@ -1,6 +1,6 @@
 //! What rings, mounts and bearings the rungs `support`, `two-plane` and `coupled` have of a scene.
 
-use touchdown_models::{MountConfig, RingConfig, SeatConfig};
+use touchdown_models::{MountConfig, RingConfig};
 
 use touchdown_scene::{Fidelity, MODES, Magnet, Mode, Removable, Ring, Scene, TwoPlane};
 
@@ -33,20 +33,18 @@ pub(super) fn shape(scene: &Scene, place: f64) -> [f64; MODES] {
 }
 
 /// The retainer's rings with what the rung has of them.
-pub(super) fn seats(scene: &Scene) -> Vec<SeatConfig<f64>> {
+pub(super) fn seats(scene: &Scene) -> Vec<RingConfig> {
     let whole = Ring::of_plane(scene);
     let rings = ends(scene).map_or(std::slice::from_ref(&whole), |it| &it.rings);
     let turns = Removable::BallBearing;
     let has = |part| scene.model.rung != Fidelity::TwoPlane && scene.model.has(part);
     let has_walls = scene.model.rung == Fidelity::Coupled;
-    let seat = |ring: &Ring| SeatConfig {
-        ring: RingConfig {
-            place: ring.place,
-            clearance: ring.retainer.clearance,
-            radius: ring.radius,
-            friction: ring.retainer.friction,
-            restitution: ring.retainer.restitution,
-        },
+    let seat = |ring: &Ring| RingConfig {
+        place: ring.place,
+        clearance: ring.retainer.clearance,
+        radius: ring.radius,
+        friction: ring.retainer.friction,
+        restitution: ring.retainer.restitution,
         compliant: ring.wall.filter(|_| has_walls).map(|it| it.law),
         mount: ring
             .support

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use touchdown_models::{
-    Coupled, CoupledConfig, Euler, Hertz, HertzConfig, Materials, ModeConfig, Moreau, MountConfig,
-    Placement, Point, RaceConfig, StopConfig, Verlet, Whole,
+    Contact, Coupled, CoupledConfig, Hertz, HertzConfig, Materials, ModeConfig, Moreau,
+    MountConfig, Placement, RaceConfig, Scheme, StopConfig, Whole,
 };
 use touchdown_rotor::real::{Micro32, Poly32, Real};
 use touchdown_rotor::{
@@ -151,24 +151,24 @@ fn by_steps(text: &mut String) {
     let config = HertzConfig {
         rigid: RigidConfig { step: 1e-6, ..RIG },
         materials: Materials::steel(),
-        shape: Point,
+        contact: Contact::Point,
         fastest: 0.2,
     };
-    let hertz = Hertz::<f64, Point, Verlet>::try_new(&config).expect("a valid machine");
+    let hertz = Hertz::<f64>::try_new(&config, Scheme::Verlet).expect("a valid machine");
     run::<f64, _>(text, "hertz, verlet: drop", &hertz, &DROP, SPIN, 20_000);
-    let hertz = Hertz::<f64, Point, Euler>::try_new(&config).expect("a valid machine");
+    let hertz = Hertz::<f64>::try_new(&config, Scheme::Euler).expect("a valid machine");
     run::<f64, _>(text, "hertz, euler: drop", &hertz, &DROP, SPIN, 20_000);
 }
 
 /// The rig in rigid rings at these places, SI.
-fn rotor<const N: usize>(places: [f64; N]) -> CoupledConfig<f64, N> {
+fn rotor<const N: usize>(places: [f64; N]) -> CoupledConfig<N> {
     CoupledConfig {
         transverse_inertia: 0.0308,
         ..CoupledConfig::of_plane(&RigidConfig { step: STEP, ..RIG }, places)
     }
 }
 
-const MOUNT: MountConfig<f64> = MountConfig {
+const MOUNT: MountConfig = MountConfig {
     mass: 0.5,
     stiffness: 2.6e6,
     damping: 320.0,
@@ -176,7 +176,7 @@ const MOUNT: MountConfig<f64> = MountConfig {
     friction: 0.0,
     stop: Some(StopConfig::rigid(5e-4)),
 };
-const RACE: RaceConfig<f64> = RaceConfig {
+const RACE: RaceConfig = RaceConfig {
     inertia: 3e-5,
     dry_drag: 0.005,
     viscous_drag: 1e-5,
@@ -205,7 +205,7 @@ fn low(tangential: f64) -> Placement<f64> {
 fn rings(text: &mut String) {
     let mut soft = rotor([0.0]);
     soft.rings[0].mount = Some(MOUNT);
-    let mut drop = |name: &str, config: &CoupledConfig<f64, 1>, start, spin, steps| {
+    let mut drop = |name: &str, config: &CoupledConfig<1>, start, spin, steps| {
         let model = Coupled::<f64, 1, 1>::try_new(config).expect("a valid machine");
         run::<f64, _>(text, name, &Whole { model, start }, &DROP, spin, steps);
     };
@@ -231,7 +231,7 @@ fn ends(text: &mut String) {
     let whole = Whole { model, start };
     run::<f64, _>(text, "two-plane: askew", &whole, &DROP, SPIN, STEPS);
     let whole = Whole {
-        model: model.rounded::<f32>(),
+        model: Coupled::<f32, 2, 2>::try_new(&config).expect("a valid machine"),
         start: start.rounded(),
     };
     let name = "two-plane, f32: askew";

@@ -4,10 +4,10 @@
 //! In a stretch the force is its mean over the way from one depth to the other, so that a contact without damping keeps
 //! the energy. Its tangent makes it a link that gives way; stretch by stretch that is found by Newton's method (`normals`).
 
+use super::Units;
 use super::links::{Grip, Link};
-use super::units::Units;
 use super::vector::Vector;
-use crate::hertz::{Line, LinePower, Point, Shape, damping};
+use crate::hertz::{Shape, damping};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
@@ -17,35 +17,22 @@ use touchdown_rotor::scales::positive;
 /// Newton's steps for the part of the depth that is not the balls': each doubles the digits.
 const POLISHINGS: usize = 8;
 
-/// How the force grows with the depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CompliantShape {
-    /// [`Point`].
-    Point,
-    /// [`Line`].
-    Line,
-    /// [`LinePower`].
-    LinePower,
-    /// In proportion to it.
-    Spring,
-}
-
 /// A wall that gives way, SI. The ring's restitution sets its damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompliantConfig<R> {
+pub struct CompliantConfig {
     /// How the force grows.
-    pub shape: CompliantShape,
+    pub shape: Shape,
     /// K, N/m^n.
-    pub stiffness: R,
+    pub stiffness: f64,
     /// Of balls and races, which give way with the wall, N/m; rigid without.
-    pub balls: Option<R>,
+    pub balls: Option<f64>,
     /// Speed up to which the damping is scaled by it and not by the contact's own, m/s.
-    pub slowest: R,
+    pub slowest: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Compliant<R> {
-    shape: CompliantShape,
+    shape: Shape,
     /// Force per mass of the rotor.
     stiffness: R,
     balls: Option<R>,
@@ -56,7 +43,7 @@ pub(super) struct Compliant<R> {
 }
 
 /// A contact, from its first to its last moment beyond the wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SoftContact<R> {
     pub(super) since: Instant<R>,
     /// Of the damping, over depth per time.
@@ -70,57 +57,44 @@ pub(super) struct SoftContact<R> {
     pub(super) stays: bool,
 }
 
-impl Compliant<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> Compliant<R> {
-        Compliant {
-            shape: self.shape,
-            stiffness: R::lit(self.stiffness),
-            balls: self.balls.map(R::lit),
-            damping: R::lit(self.damping),
-            slowest: R::lit(self.slowest),
-            gap: R::lit(self.gap),
-        }
-    }
-}
-
 impl<R: Precision> Compliant<R> {
     /// A spring that takes nothing: its stiffness per mass of the rotor, and the way to it.
-    pub(super) fn spring(stiffness: R, gap: R) -> Self {
+    pub(super) fn spring(stiffness: f64, gap: f64) -> Self {
         Self {
-            shape: CompliantShape::Spring,
-            stiffness,
+            shape: Shape::Spring,
+            stiffness: R::lit(stiffness),
             balls: None,
             damping: R::ZERO,
             slowest: R::ONE,
-            gap,
+            gap: R::lit(gap),
         }
     }
 
     /// `gap` is the ring's clearance over the first's.
     pub(super) fn try_new(
-        config: &CompliantConfig<R>,
-        restitution: R,
-        gap: R,
-        units: &Units<R>,
+        config: &CompliantConfig,
+        restitution: f64,
+        gap: f64,
+        units: &Units,
     ) -> Result<Self, ConfigError> {
         positive("stiffness", config.stiffness)?;
         positive("slowest", config.slowest)?;
         let scales = &units.scales;
         let spring = scales.length / scales.speed * (scales.length / scales.speed) / units.mass;
         let root = match config.shape {
-            CompliantShape::Point => scales.length.sqrt(),
-            _ => R::ONE,
+            Shape::Point => Real::sqrt(scales.length),
+            _ => 1.0,
         };
         if let Some(balls) = config.balls {
             positive("balls", balls)?;
         }
         Ok(Self {
             shape: config.shape,
-            stiffness: config.stiffness * spring * root,
-            balls: config.balls.map(|it| it * spring),
-            damping: damping(restitution),
-            slowest: config.slowest / scales.speed,
-            gap,
+            stiffness: R::lit(config.stiffness * spring * root),
+            balls: config.balls.map(|it| R::lit(it * spring)),
+            damping: R::lit(damping(restitution)),
+            slowest: R::lit(config.slowest / scales.speed),
+            gap: R::lit(gap),
         })
     }
 
@@ -129,12 +103,8 @@ impl<R: Precision> Compliant<R> {
         if depth <= R::ZERO {
             return [R::ZERO; 2];
         }
-        let (power, slope) = match self.shape {
-            CompliantShape::Point => law::<R, Point>(depth, self.gap),
-            CompliantShape::Line => law::<R, Line<R>>(depth, self.gap),
-            CompliantShape::LinePower => law::<R, LinePower<R>>(depth, self.gap),
-            CompliantShape::Spring => (depth, R::ONE),
-        };
+        let power = self.shape.power(depth, self.gap);
+        let slope = self.shape.slope(depth, power);
         let force = self.stiffness * power;
         [force, slope * force / depth]
     }
@@ -169,12 +139,7 @@ impl<R: Precision> Compliant<R> {
         let own = self.own(depth);
         let [force, _] = self.alone(own);
         let power = force / self.stiffness;
-        let parts = match self.shape {
-            CompliantShape::Point => Point::parts(own, power),
-            CompliantShape::Line => Line::parts(own, power),
-            CompliantShape::LinePower => LinePower::parts(own, power),
-            CompliantShape::Spring => R::TWO,
-        };
+        let parts = self.shape.parts(own, power);
         let balls = self.balls.map_or(R::ZERO, |it| R::HALF * force / it);
         force * (own / parts + balls)
     }
@@ -188,7 +153,7 @@ impl<R: Precision> Compliant<R> {
             return [mean * share, slope * share + mean * before];
         }
         let (from, inside) = (from.most(R::ZERO), to.most(R::ZERO));
-        let mean = if self.balls.is_none() && self.shape == CompliantShape::Point {
+        let mean = if self.balls.is_none() && self.shape == Shape::Point {
             // Of d^1.5: by differences of d^2.5, of which the root of the depth is a factor.
             let (a, b) = (from.sqrt(), inside.sqrt());
             let sum = a + b;
@@ -237,11 +202,7 @@ impl<R: Precision> Compliant<R> {
         SoftContact {
             since,
             rate: self.damping / speed.most(self.slowest),
-            stored: R::ZERO,
-            peak: R::ZERO,
-            impulse: R::ZERO,
-            leaves: false,
-            stays: false,
+            ..SoftContact::default()
         }
     }
 
@@ -294,9 +255,4 @@ impl<R: Precision> SoftContact<R> {
         self.stays |= again;
         again
     }
-}
-
-fn law<R: Real, C: Shape<R>>(depth: R, gap: R) -> (R, R) {
-    let power = C::power(depth, gap);
-    (power, C::slope(depth, power))
 }

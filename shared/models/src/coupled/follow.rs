@@ -1,22 +1,17 @@
 //! A step: stretches without impact, and the impacts between them.
 //!
 //! A stretch is tried as long as it can be. Where the axis ends beyond a ring's wall, or a ring beyond its
-//! stop, the moment at which it got there follows from the square of the distance, a parabola through its
-//! value and slope before and its value after; the stretch is taken to there, and again from there, until
-//! the wall is met.
+//! stop, it is taken to the moment at which it got there (`beyond`), and again from there, until the wall is met.
 
 use core::array::from_fn;
 
-use super::compliant::Compliant;
-use super::crossing::crossing;
+use super::beyond::Arrival;
 use super::passage::Passage;
 use super::settle::AtWall;
-use super::state::Held;
-use super::vector::Vector;
+use super::state::{Held, Listener};
 use super::{Coupled, CoupledState, RingEvent, at};
 use touchdown_rotor::kinematics::{Change, ModelEvent, Pulse};
 use touchdown_rotor::precision::Precision;
-use touchdown_rotor::real::Real;
 
 /// Stretches in a step, tried ones included; beyond, the rest of the step is left out. Chosen, because 20
 /// turns of whirl fit in.
@@ -25,90 +20,25 @@ const MOST_STRETCHES: usize = 512;
 const MOST_IMPACTS: usize = 16;
 /// Shortenings by the parabola in a row; then by halves.
 const MOST_CROSSINGS: usize = 4;
-/// Distance from a wall, in units of epsilon and its radius, that counts as on it.
-const ON_WALL: f64 = 64.0;
-
 /// Part of a step on the way to an impact that is too short to tell whether the axis leaves another wall: its speed across
 /// that is not nothing, but of the step's error.
 const TOO_SHORT: f64 = 1e-3;
 
-/// What the square of the distance from a wall of radius 1 may lack of being on it.
-pub(super) fn on_wall<R: Real>() -> R {
-    R::lit(ON_WALL) * R::EPSILON
-}
-
-/// Who arrived at which wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Arrival {
-    Axis(usize),
-    Ring(usize),
-}
-
-/// The wall that a stretch goes beyond.
-#[derive(Clone, Copy, Debug)]
-struct Beyond<R> {
-    who: Arrival,
-    /// Part of the stretch until then.
-    share: R,
-    /// Whether it is there before the stretch begins.
-    now: bool,
-}
-
-/// What is free inside a wall during a stretch.
-struct Flyer<R> {
-    who: Arrival,
-    place: Vector<R>,
-    moved: Vector<R>,
-    velocity: Vector<R>,
-    /// Change of the velocity.
-    kick: Vector<R>,
-    radius: R,
-}
-
-impl<R: Precision> Flyer<R> {
-    fn beyond(&self, time: R) -> Option<Beyond<R>> {
-        let square = self.radius * self.radius;
-        let end = self.place + self.moved;
-        let over = end.square() - square;
-        let value = self.place.square() - square;
-        let near = on_wall::<R>() * square;
-        let inward = end.dot(self.velocity + self.kick) <= R::ZERO;
-        if over <= R::ZERO || (inward && over <= value.most(R::ZERO) + near) {
-            return None;
-        }
-        let outward = self.place.dot(self.velocity);
-        Some(Beyond {
-            who: self.who,
-            share: crossing(value, R::TWO * time * outward, over),
-            now: value >= -near && outward > R::ZERO,
-        })
-    }
-}
-
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// One step. Bounded; cannot fail.
-    pub fn step(&self, state: &mut CoupledState<R, N, Q>, on_event: impl FnMut(RingEvent<R>)) {
-        self.go(state, R::ONE, on_event);
+    pub fn step(&self, state: &mut CoupledState<R, N, Q>, mut on_event: impl FnMut(RingEvent<R>)) {
+        self.part_step(state, R::ONE, &mut on_event);
         state.tick += 1;
     }
 
-    /// The last part of a run: `fraction` of a step, below 1.
+    /// The last part of a run: `fraction` of a step, below 1. Built once, whatever is done with its events.
     pub fn part_step(
         &self,
         state: &mut CoupledState<R, N, Q>,
         fraction: R,
-        on_event: impl FnMut(RingEvent<R>),
+        on_event: &mut dyn FnMut(RingEvent<R>),
     ) {
-        self.go(state, fraction, on_event);
-    }
-
-    fn go(
-        &self,
-        state: &mut CoupledState<R, N, Q>,
-        part: R,
-        mut on_event: impl FnMut(RingEvent<R>),
-    ) {
-        let whole = self.step * part;
+        let whole = self.step * fraction;
         let short = R::lit(TOO_SHORT) * self.step;
         let (mut left, mut longest, mut impacts) = (whole, whole, 0);
         let mut crossings = 0;
@@ -134,15 +64,15 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             match self.beyond(state, &passage) {
                 None => {
                     left -= time;
-                    let now = (whole - left) / self.step;
+                    let part = (whole - left) / self.step;
                     let keeps = crossings > 0 && time <= short;
-                    self.accept(state, &passage, now, keeps, &mut on_event);
+                    self.accept(state, &passage, keeps, &mut Listener { part, on_event });
                     (longest, crossings) = (R::TWO * time, 0);
                 }
                 Some(beyond) if beyond.now || beyond.share * time <= R::EPSILON * whole => {
-                    let now = (whole - left) / self.step;
+                    let part = (whole - left) / self.step;
                     let stays = impacts >= MOST_IMPACTS;
-                    self.arrive(state, beyond.who, stays, now, &mut on_event);
+                    self.arrive(state, beyond.who, stays, &mut Listener { part, on_event });
                     impacts += 1;
                     (longest, crossings) = (whole, 0);
                 }
@@ -163,50 +93,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// The first wall that the stretch goes beyond.
-    fn beyond(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        passage: &Passage<R, N, Q>,
-    ) -> Option<Beyond<R>> {
-        let mut first: Option<Beyond<R>> = None;
-        for (i, ring) in self.rings.iter().enumerate() {
-            let (ring_moved, ring_kick) = (passage.ring_moved(i), passage.ring_kick(i));
-            let axis = (!state.is_held(i)).then(|| Flyer {
-                who: Arrival::Axis(i),
-                place: self.within(state, i),
-                moved: at(&ring.shape, &passage.moved) - ring_moved,
-                velocity: self.relative(state, i),
-                kick: at(&ring.shape, &passage.kick) - ring_kick,
-                radius: ring.limit,
-            });
-            let travel = ring.mount.as_ref().and_then(|mount| mount.travel());
-            let travel = travel.filter(|_| !state.is_stopped(i));
-            let stop = travel.map(|radius| Flyer {
-                who: Arrival::Ring(i),
-                place: state.ring_place(i),
-                moved: ring_moved,
-                velocity: state.ring_velocity(i),
-                kick: ring_kick,
-                radius,
-            });
-            for flyer in [axis, stop].into_iter().flatten() {
-                let beyond = flyer.beyond(passage.time);
-                let earlier = |it: &Beyond<R>| first.is_none_or(|first| it.share < first.share);
-                first = beyond.filter(earlier).or(first);
-            }
-        }
-        first
-    }
-
     /// Takes a stretch; with `keeps` no ring is left in it.
     fn accept(
         &self,
         state: &mut CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,
-        part: R,
         keeps: bool,
-        on_event: &mut impl FnMut(RingEvent<R>),
+        to: &mut Listener<R>,
     ) {
         let before = from_fn(|i| state.is_held(i).then(|| self.at_wall(state, i)));
         let time = passage.time;
@@ -226,13 +119,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             self.advance_ring(state, passage, i, spin);
             if state.lies(i) && !keeps && passage.presses[i].is_none() {
                 state.seats[i].held = None;
-                self.tell(state, i, part, Change::LiftsOff, on_event);
+                self.tell(state, i, Change::LiftsOff, to);
             } else if state.is_held(i) {
-                self.go_on(state, passage, i, part, on_event);
+                self.go_on(state, passage, i, to);
             }
         }
         self.calm(&before, state);
-        let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.stuck));
+        let mut stuck = passage.presses.map(|it| it.is_some_and(|it| it.is_stuck()));
         if !passage.rubs {
             state.jammed = state.jammed.or(Some(state.tick));
             stuck = self.rub_in_turn(state, passage);
@@ -256,7 +149,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 (true, false) => Change::SlidingStarts,
                 _ => continue,
             };
-            self.tell(state, i, part, change, on_event);
+            self.tell(state, i, change, to);
         }
         self.seat(state);
     }
@@ -271,7 +164,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             books.driven.add(push.dot(passage.moved[0]));
             for (i, ring) in self.rings.iter().enumerate() {
                 if let Some(mount) = &ring.mount {
-                    books.driven.add(mount.shaken(push, passage.ring_moved(i)));
+                    let moved = passage.ring_moved(i);
+                    books.driven.add(mount.mass * push.dot(moved));
                 }
             }
         }
@@ -301,9 +195,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         let seat = &mut state.seats[i];
         if let Some(mount) = &ring.mount {
             mount.advance(&mut seat.mount, &passage.rides[i], time, passage.pushed[i]);
-            if !passage.stopped[i] {
-                mount.release(&mut seat.mount);
-            }
+            seat.mount.stopped &= passage.stopped[i];
         }
         let rub = passage.rub(i);
         let (mut turned, mut race_spin) = (R::ZERO, R::ZERO);
@@ -333,31 +225,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &mut CoupledState<R, N, Q>,
         who: Arrival,
         stays: bool,
-        part: R,
-        on_event: &mut impl FnMut(RingEvent<R>),
+        to: &mut Listener<R>,
     ) {
-        if let Arrival::Axis(i) = who
-            && let Some(compliant) = &self.rings[i].compliant
-        {
-            self.enter(state, i, compliant, part, on_event);
-        } else {
-            self.meet(state, Some(who), stays, part, on_event);
-        }
-    }
-
-    fn enter(
-        &self,
-        state: &mut CoupledState<R, N, Q>,
-        i: usize,
-        compliant: &Compliant<R>,
-        part: R,
-        on_event: &mut impl FnMut(RingEvent<R>),
-    ) {
+        let (Arrival::Axis(i) | Arrival::Ring(i)) = who;
+        let gives_way = self.rings[i].compliant.as_ref();
+        let Some(compliant) = gives_way.filter(|_| who == Arrival::Axis(i)) else {
+            return self.meet(state, Some(who), stays, to);
+        };
         let ring = &self.rings[i];
-        let within = self.within(state, i);
-        let normal = within.times(R::ONE / within.length());
+        let normal = self.within(state, i).unit();
         let speed = normal.dot(self.relative(state, i)).most(R::ZERO);
-        let soft = compliant.entered(state.in_step(part), speed);
+        let soft = compliant.entered(state.in_step(to.part), speed);
         state.seats[i].held = Some(Held {
             soft: Some(soft),
             ..Held::default()
@@ -368,7 +246,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             speed,
             impulse: (R::ONE + ring.restitution) * speed / mobility,
         };
-        self.tell(state, i, part, change, on_event);
+        self.tell(state, i, change, to);
     }
 
     /// After a stretch in a wall that gives way: what it stores, and whether it is left.
@@ -377,8 +255,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &mut CoupledState<R, N, Q>,
         passage: &Passage<R, N, Q>,
         i: usize,
-        part: R,
-        on_event: &mut impl FnMut(RingEvent<R>),
+        to: &mut Listener<R>,
     ) {
         let ring = &self.rings[i];
         let Some(compliant) = &ring.compliant else {
@@ -410,27 +287,26 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             (true, true) => Change::LiftsOff,
             (true, false) => Change::Released(Pulse {
                 peak_force: soft.peak,
-                duration: state.in_step(part).since(soft.since) * self.step,
+                duration: state.in_step(to.part).since(soft.since) * self.step,
                 impulse: soft.impulse,
             }),
             (false, _) if begins => Change::ContactStarts,
             _ => return,
         };
-        self.tell(state, i, part, change, on_event);
+        self.tell(state, i, change, to);
     }
 
     pub(super) fn tell(
         &self,
         state: &CoupledState<R, N, Q>,
         ring: usize,
-        part: R,
         change: Change<R>,
-        on_event: &mut impl FnMut(RingEvent<R>),
+        to: &mut Listener<R>,
     ) {
-        on_event(RingEvent {
+        (to.on_event)(RingEvent {
             ring,
             event: ModelEvent {
-                at: state.in_step(part),
+                at: state.in_step(to.part),
                 change,
                 after: self.kinematics_at(state, ring),
             },

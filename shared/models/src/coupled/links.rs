@@ -92,15 +92,12 @@ impl<R: Real> Link<R> {
     }
 }
 
-/// All walls that are touched.
+/// All walls that are touched, each at its place: [`contact`] or [`stop`] of its ring.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Links<R, const N: usize> {
-    count: usize,
     link: Pairs<Option<Link<R>>, N>,
-    /// Motion of the first by an impulse in the second.
-    response: Pairs<Pairs<Mobility<R>, N>, N>,
-    /// Of the slip, by a tangential impulse, what is not motion.
-    spin: Pairs<Pairs<R, N>, N>,
+    /// Motion of the first by an impulse in the second; of the slip, by a tangential one, what is not motion.
+    response: Pairs<Pairs<(Mobility<R>, R), N>, N>,
     /// Linear systems solved.
     pub(super) systems: u32,
 }
@@ -108,42 +105,47 @@ pub(super) struct Links<R, const N: usize> {
 /// For each link; `N` rings have a contact and a stop each.
 type Pairs<T, const N: usize> = [[T; 2]; N];
 
+/// Place of a ring's contact in the order of all links.
+pub(super) const fn contact(ring: usize) -> usize {
+    2 * ring
+}
+
+/// Place of its stop.
+pub(super) const fn stop(ring: usize) -> usize {
+    2 * ring + 1
+}
+
 /// For each unknown: normal and friction of the contacts, normal of the stops.
 type Unknowns<T, const N: usize> = [[T; 3]; N];
-
-/// A linear system and its right side.
-struct System<R, const N: usize> {
-    rows: Unknowns<Unknowns<R, N>, N>,
-    right: Unknowns<R, N>,
-}
 
 impl<R: Real, const N: usize> Links<R, N> {
     pub(super) fn new() -> Self {
         Self {
-            count: 0,
             link: [[None; 2]; N],
-            response: [[[[Mobility::default(); 2]; N]; 2]; N],
-            spin: [[[[R::ZERO; 2]; N]; 2]; N],
+            response: [[[[(Mobility::default(), R::ZERO); 2]; N]; 2]; N],
             systems: 0,
         }
     }
 
-    fn links(&self) -> impl Iterator<Item = &Link<R>> {
-        self.link.as_flattened().iter().flatten()
+    /// Each, and its place.
+    fn links(&self) -> impl Iterator<Item = (usize, &Link<R>)> {
+        let places = self.link.as_flattened().iter().enumerate();
+        places.filter_map(|(place, link)| Some((place, link.as_ref()?)))
     }
 
-    /// Adds a link; its place in the order.
-    pub(super) fn add(&mut self, link: Link<R>) -> usize {
-        let place = self.count;
+    pub(super) fn put(&mut self, place: usize, link: Link<R>) {
         if let Some(slot) = self.link.as_flattened_mut().get_mut(place) {
             *slot = Some(link);
-            self.count += 1;
         }
-        place
     }
 
     pub(super) fn get(&self, place: usize) -> Option<&Link<R>> {
         self.link.as_flattened().get(place)?.as_ref()
+    }
+
+    /// The link that presses there.
+    pub(super) fn pressing(&self, place: usize) -> Option<&Link<R>> {
+        self.get(place).filter(|it| it.grip != Grip::Open)
     }
 
     pub(super) fn get_mut(&mut self, place: usize) -> Option<&mut Link<R>> {
@@ -158,36 +160,30 @@ impl<R: Real, const N: usize> Links<R, N> {
         if let Some(row) = self.response.as_flattened_mut().get_mut(to)
             && let Some(slot) = row.as_flattened_mut().get_mut(from)
         {
-            *slot = motion;
+            *slot = (motion, spin);
         }
-        if let Some(row) = self.spin.as_flattened_mut().get_mut(to)
-            && let Some(slot) = row.as_flattened_mut().get_mut(from)
-        {
-            *slot = spin;
-        }
+    }
+
+    /// Each link, and what its impulse does at a place.
+    fn responses(&self, to: usize) -> impl Iterator<Item = (&Link<R>, &(Mobility<R>, R))> {
+        let row = self.response.as_flattened().get(to);
+        let row = row.into_iter().flat_map(|it| it.as_flattened());
+        let all = self.link.as_flattened().iter().zip(row);
+        all.filter_map(|(link, response)| Some((link.as_ref()?, response)))
     }
 
     /// Motion with all impulses.
     pub(super) fn motion(&self, place: usize) -> Vector<R> {
-        let (Some(link), Some(row)) = (self.get(place), self.response.as_flattened().get(place))
-        else {
-            return Vector::default();
-        };
-        let others = self.links().zip(row.as_flattened());
-        others.fold(link.free, |sum, (other, response)| {
-            sum + response.to(other.push())
-        })
+        let free = self.get(place).map_or(Vector::default(), |it| it.free);
+        let others = self.responses(place);
+        others.fold(free, |sum, (it, (motion, _))| sum + motion.to(it.push()))
     }
 
     /// Of the slip, what is not motion, with all impulses.
     pub(super) fn surface(&self, place: usize) -> R {
-        let (Some(link), Some(row)) = (self.get(place), self.spin.as_flattened().get(place)) else {
-            return R::ZERO;
-        };
-        let others = self.links().zip(row.as_flattened());
-        others.fold(link.surface, |sum, (other, response)| {
-            sum + *response * other.rubbed
-        })
+        let surface = self.get(place).map_or(R::ZERO, |it| it.surface);
+        let others = self.responses(place);
+        others.fold(surface, |sum, (it, (_, spin))| sum + *spin * it.rubbed)
     }
 
     /// Finds all impulses; false where no set of links that press and slide was found to hold.
@@ -198,7 +194,7 @@ impl<R: Real, const N: usize> Links<R, N> {
             let mut holds = true;
             // A wall that its own rounding opens and closes stays open.
             let least = if trial < TOGETHER { R::ZERO } else { close };
-            for place in 0..self.count {
+            for place in 0..2 * N {
                 let Some(grip) = self.corrected(place, close, least) else {
                     continue;
                 };
@@ -219,7 +215,7 @@ impl<R: Real, const N: usize> Links<R, N> {
 
     /// Size of the motion.
     fn size(&self) -> R {
-        self.links().fold(R::ZERO, |most, link| {
+        self.links().fold(R::ZERO, |most, (_, link)| {
             most.most(link.free.length() + link.wanted.abs() + link.surface.abs())
         })
     }
@@ -261,7 +257,7 @@ impl<R: Real, const N: usize> Links<R, N> {
         // Of each unknown: its link, and the impulse of a unit of it as (-normal, tangential).
         let mut all: Unknowns<(usize, Vector<R>), N> = [[(0, Vector::default()); 3]; N];
         let mut count = 0;
-        for (place, link) in self.links().enumerate() {
+        for (place, link) in self.links() {
             let (one, also) = match link.grip {
                 Grip::Open => continue,
                 Grip::Slides(friction) => (Vector::new([-R::ONE, friction]), false),
@@ -275,17 +271,15 @@ impl<R: Real, const N: usize> Links<R, N> {
                 }
             }
         }
-        let mut system = System {
-            rows: [[[[R::ZERO; 3]; N]; 3]; N],
-            right: [[R::ZERO; 3]; N],
-        };
+        let mut rows = [[[[R::ZERO; 3]; N]; 3]; N];
+        let mut right = [[R::ZERO; 3]; N];
         let unknowns = &all.as_flattened()[..count];
-        let rows = system.rows.as_flattened_mut().iter_mut();
-        let rights = system.right.as_flattened_mut();
-        for ((row, right), unknown) in rows.zip(rights).zip(unknowns) {
+        let equations = rows.as_flattened_mut().iter_mut();
+        let equations = equations.zip(right.as_flattened_mut());
+        for ((row, right), unknown) in equations.zip(unknowns) {
             *right = self.fill(row.as_flattened_mut(), unknown, unknowns);
         }
-        let found = system.solved(count);
+        let found = solved(rows, right, count);
         for link in self.all() {
             (link.pressed, link.rubbed) = (R::ZERO, R::ZERO);
         }
@@ -309,14 +303,13 @@ impl<R: Real, const N: usize> Links<R, N> {
             return R::ZERO;
         };
         let response = self.response[place / 2][place % 2].as_flattened();
-        let spin = self.spin[place / 2][place % 2].as_flattened();
         for (slot, (from, unit)) in row.iter_mut().zip(unknowns) {
-            let Some(other) = self.get(*from) else {
+            let (Some(other), (motion, spin)) = (self.get(*from), response[*from]) else {
                 continue;
             };
-            let moved = response[*from].to(*unit * other.normal);
+            let moved = motion.to(*unit * other.normal);
             *slot = if slips {
-                link.normal.cross(moved) + spin[*from] * unit.y
+                link.normal.cross(moved) + spin * unit.y
             } else {
                 link.normal.dot(moved)
             };
@@ -347,10 +340,7 @@ impl<R: Real, const N: usize> Links<R, N> {
 
     /// Energy that the impulses give, where motions are velocities.
     pub(super) fn gained(&self) -> R {
-        (0..self.count).fold(R::ZERO, |sum, place| {
-            let Some(link) = self.get(place) else {
-                return sum;
-            };
+        self.links().fold(R::ZERO, |sum, (place, link)| {
             let mean = (link.free + self.motion(place)).times(R::HALF);
             let surface = R::HALF * (link.surface + self.surface(place));
             sum + link.push().dot(mean) + link.rubbed * surface
@@ -371,9 +361,9 @@ impl<R: Real, const N: usize> Links<R, N> {
             (link.pressed, link.rubbed, link.wanted) = (R::ZERO, R::ZERO, R::ZERO);
         }
         for _ in 0..TURNS {
-            for place in 0..self.count {
+            for place in 0..2 * N {
                 let motion = self.motion(place);
-                let own = self.response[place / 2][place % 2].as_flattened()[place];
+                let (own, _) = self.response[place / 2][place % 2].as_flattened()[place];
                 if let Some(link) = self.get_mut(place) {
                     let own = own.own(link.normal);
                     link.pressed += link.normal.dot(motion).most(R::ZERO) / own;
@@ -383,55 +373,56 @@ impl<R: Real, const N: usize> Links<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> System<R, N> {
-    /// Solves the first `count` by elimination; unknowns that the others tell already are 0.
-    fn solved(mut self, count: usize) -> Unknowns<R, N> {
-        let rows = self.rows.as_flattened_mut();
-        let right = self.right.as_flattened_mut();
-        let mut largest = R::ZERO;
-        for row in rows.iter().take(count) {
-            for value in row.as_flattened().iter().take(count) {
-                largest = largest.most(value.abs());
+/// Solves the first `count` rows by elimination, to the right side; unknowns that the others tell already are 0.
+fn solved<R: Real, const N: usize>(
+    mut rows: Unknowns<Unknowns<R, N>, N>,
+    mut right: Unknowns<R, N>,
+    count: usize,
+) -> Unknowns<R, N> {
+    let (rows, right) = (rows.as_flattened_mut(), right.as_flattened_mut());
+    let mut largest = R::ZERO;
+    for row in rows.iter().take(count) {
+        for value in row.as_flattened().iter().take(count) {
+            largest = largest.most(value.abs());
+        }
+    }
+    let least = R::lit(TOLD) * R::EPSILON * largest;
+    let mut found = [[R::ZERO; 3]; N];
+    // Of each unknown, the row that tells it.
+    let mut told = [[None; 3]; N];
+    let mut next = 0;
+    for column in 0..count {
+        let at = |row: &Unknowns<R, N>| row[column / 3][column % 3];
+        let mut best = next;
+        for row in next..count {
+            if at(&rows[row]).abs() > at(&rows[best]).abs() {
+                best = row;
             }
         }
-        let least = R::lit(TOLD) * R::EPSILON * largest;
-        let mut found = [[R::ZERO; 3]; N];
-        // Of each unknown, the row that tells it.
-        let mut told = [[None; 3]; N];
-        let mut next = 0;
-        for column in 0..count {
-            let at = |row: &Unknowns<R, N>| row[column / 3][column % 3];
-            let mut best = next;
-            for row in next..count {
-                if at(&rows[row]).abs() > at(&rows[best]).abs() {
-                    best = row;
-                }
-            }
-            if next >= count || at(&rows[best]).abs() <= least {
+        if next >= count || at(&rows[best]).abs() <= least {
+            continue;
+        }
+        rows.swap(best, next);
+        right.swap(best, next);
+        let (pivot, pivot_right) = (rows[next], right[next]);
+        for index in 0..count {
+            let factor = at(&rows[index]) / at(&pivot);
+            if index == next || factor == R::ZERO {
                 continue;
             }
-            rows.swap(best, next);
-            right.swap(best, next);
-            let (pivot, pivot_right) = (rows[next], right[next]);
-            for index in 0..count {
-                let factor = at(&rows[index]) / at(&pivot);
-                if index == next || factor == R::ZERO {
-                    continue;
-                }
-                let values = rows[index].as_flattened_mut().iter_mut();
-                for (value, take) in values.zip(pivot.as_flattened()).take(count) {
-                    *value -= factor * *take;
-                }
-                right[index] -= factor * pivot_right;
+            let values = rows[index].as_flattened_mut().iter_mut();
+            for (value, take) in values.zip(pivot.as_flattened()).take(count) {
+                *value -= factor * *take;
             }
-            told[column / 3][column % 3] = Some(next);
-            next += 1;
+            right[index] -= factor * pivot_right;
         }
-        for column in 0..count {
-            if let Some(row) = told[column / 3][column % 3] {
-                found[column / 3][column % 3] = right[row] / rows[row][column / 3][column % 3];
-            }
-        }
-        found
+        told[column / 3][column % 3] = Some(next);
+        next += 1;
     }
+    for column in 0..count {
+        if let Some(row) = told[column / 3][column % 3] {
+            found[column / 3][column % 3] = right[row] / rows[row][column / 3][column % 3];
+        }
+    }
+    found
 }

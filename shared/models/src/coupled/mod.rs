@@ -13,13 +13,13 @@
 // Coordinates and rings are counted alike in several arrays.
 #![allow(clippy::needless_range_loop)]
 
+mod beyond;
 mod compliant;
 mod config;
-mod crossing;
 mod energy;
 mod follow;
-mod limit;
 mod links;
+mod magnets;
 mod mount;
 mod normals;
 mod passage;
@@ -27,14 +27,12 @@ mod race;
 mod settle;
 mod state;
 mod strike;
-mod switch;
-mod units;
 mod vector;
 mod whole;
 
-pub use compliant::{CompliantConfig, CompliantShape};
+pub use compliant::CompliantConfig;
 pub use config::{
-    ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, SeatConfig, UnbalanceConfig,
+    ActuatorConfig, BaseConfig, CoupledConfig, ModeConfig, RingConfig, UnbalanceConfig,
 };
 pub use energy::CoupledEnergy;
 pub use mount::{MountConfig, StopConfig};
@@ -44,9 +42,9 @@ pub use whole::Whole;
 
 use compliant::Compliant;
 use config::{MAGNETS, MODES};
+use magnets::Magnet;
 use mount::Sprung;
 use race::BallBearing;
-use touchdown_rotor::clock::Instant;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
@@ -65,33 +63,6 @@ struct Ring<R, const Q: usize> {
     compliant: Option<Compliant<R>>,
     mount: Option<Sprung<R>>,
     race: Option<BallBearing<R>>,
-}
-
-impl<R: Real, const Q: usize> Default for Ring<R, Q> {
-    fn default() -> Self {
-        Self {
-            shape: [R::ZERO; Q],
-            limit: R::ONE,
-            surface: R::ONE,
-            friction: R::ZERO,
-            restitution: R::ZERO,
-            compliant: None,
-            mount: None,
-            race: None,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Magnet<R, const Q: usize> {
-    shape: [R; Q],
-    stiffness: R,
-    damping: R,
-    force: Vector<R>,
-    /// Of the force, on each axis.
-    limit: Option<R>,
-    /// From when and until when; always without.
-    on: Option<[Instant<R>; 2]>,
 }
 
 /// A base that goes to and fro: the acceleration that all on it feels, from which it is seen.
@@ -132,10 +103,34 @@ pub struct Coupled<R, const N: usize, const Q: usize> {
     scales: Scales<R>,
 }
 
+/// What turns SI into the model's units: of the rotor and one of its rings.
+struct Units {
+    mass: f64,
+    /// Of the rotor at the first ring, m.
+    radius: f64,
+    /// Of the retainer, m.
+    bore: f64,
+    /// Length of a step, T.
+    step: f64,
+    scales: Scales<f64>,
+}
+
 /// Displacement of a place from the coordinates.
 fn at<R: Real, const Q: usize>(shape: &[R; Q], of: &[Vector<R>; Q]) -> Vector<R> {
     let terms = shape.iter().zip(of);
     terms.fold(Vector::default(), |sum, (b, x)| sum + x.times(*b))
+}
+
+/// The shape of a place that tilts by `zeta`, with each mode's displacement there.
+fn shape_of<R: Real, const Q: usize>(scale: [R; Q], zeta: R, modes: [R; MODES]) -> [R; Q] {
+    let mut shape = scale;
+    for (b, mode) in shape.iter_mut().skip(2).zip(modes) {
+        *b *= mode;
+    }
+    for (b, rigid) in shape.iter_mut().zip([R::ONE, zeta]) {
+        *b = rigid;
+    }
+    shape
 }
 
 fn product<R: Real, const Q: usize>(a: &[R; Q], b: &[R; Q]) -> R {
@@ -155,60 +150,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// A place on the axis, m from the centre of mass, with each mode's displacement there.
     pub fn shape_at(&self, place: R, modes: [R; MODES]) -> [R; Q] {
-        let mut shape = self.mode_scale;
-        for (b, mode) in shape.iter_mut().skip(2).zip(modes) {
-            *b *= mode;
-        }
-        let zeta = place * self.tilt / self.scales.length;
-        for (b, rigid) in shape.iter_mut().zip([R::ONE, zeta]) {
-            *b = rigid;
-        }
-        shape
-    }
-}
-
-impl<const N: usize, const Q: usize> Coupled<f64, N, Q> {
-    /// The same model with every coefficient rounded once.
-    pub fn rounded<R: Real>(&self) -> Coupled<R, N, Q> {
-        let vector = |v: Vector<f64>| Vector::new(v.parts().map(R::lit));
-        Coupled {
-            rings: self.rings.map(|ring| Ring {
-                shape: ring.shape.map(R::lit),
-                limit: R::lit(ring.limit),
-                surface: R::lit(ring.surface),
-                friction: R::lit(ring.friction),
-                restitution: R::lit(ring.restitution),
-                compliant: ring.compliant.map(|it| it.rounded()),
-                mount: ring.mount.map(|mount| mount.rounded()),
-                race: ring.race.map(|race| race.rounded()),
-            }),
-            inertia_ratio: R::lit(self.inertia_ratio),
-            gyration: R::lit(self.gyration),
-            turn: R::lit(self.turn),
-            gravity: vector(self.gravity),
-            magnets: self.magnets.map(|magnet| {
-                magnet.map(|magnet| Magnet {
-                    shape: magnet.shape.map(R::lit),
-                    stiffness: R::lit(magnet.stiffness),
-                    damping: R::lit(magnet.damping),
-                    force: vector(magnet.force),
-                    limit: magnet.limit.map(R::lit),
-                    on: magnet.on.map(|it| it.map(switch::rounded)),
-                })
-            }),
-            base: self.base.map(|base| Base {
-                push: vector(base.push),
-                rate: R::lit(base.rate),
-                phase: R::lit(base.phase),
-            }),
-            frequency: self.frequency.map(R::lit),
-            decay: self.decay.map(R::lit),
-            mode_scale: self.mode_scale.map(R::lit),
-            weight: self.weight.map(vector),
-            repeats: self.repeats,
-            step: R::lit(self.step),
-            tilt: R::lit(self.tilt),
-            scales: self.scales.rounded(),
-        }
+        shape_of(
+            self.mode_scale,
+            place * self.tilt / self.scales.length,
+            modes,
+        )
     }
 }

@@ -15,8 +15,8 @@
 //! the mean motion. It stops a ring that it would turn round, and gives nothing where that turns round by itself; a ring
 //! that it holds gives way to nothing. It has no impulse in an impact.
 
+use super::Units;
 use super::compliant::Compliant;
-use super::units::Units;
 use super::vector::{Sums, Vector};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::precision::Precision;
@@ -30,36 +30,33 @@ pub(super) const OFF: f64 = 64.0;
 
 /// A ring on a spring and a damper, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MountConfig<R> {
+pub struct MountConfig {
     /// Of the ring and all that moves with it, kg.
-    pub mass: R,
+    pub mass: f64,
     /// N/m.
-    pub stiffness: R,
+    pub stiffness: f64,
     /// N s/m, 0 or more.
-    pub damping: R,
+    pub damping: f64,
     /// Stiffness and damping along y, where they are others than along x.
-    pub vertical: Option<[R; 2]>,
+    pub vertical: Option<[f64; 2]>,
     /// Dry friction of the ring on its seat, N, 0 or more.
-    pub friction: R,
+    pub friction: f64,
     /// What ends the ring's way, if anything does.
-    pub stop: Option<StopConfig<R>>,
+    pub stop: Option<StopConfig>,
 }
 
 /// A stop of a ring, without friction, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StopConfig<R> {
+pub struct StopConfig {
     /// Way of the ring from its rest place to it, m.
-    pub travel: R,
+    pub travel: f64,
     /// Of a stop that gives way and gives all back, N/m; a rigid one gives nothing back.
-    pub stiffness: Option<R>,
+    pub stiffness: Option<f64>,
 }
 
-impl<R> StopConfig<R> {
+impl StopConfig {
     /// One that does not give way.
-    pub const fn rigid(travel: R) -> Self
-    where
-        R: Copy,
-    {
+    pub const fn rigid(travel: f64) -> Self {
         Self {
             travel,
             stiffness: None,
@@ -67,7 +64,13 @@ impl<R> StopConfig<R> {
     }
 }
 
-impl<R: Real> MountConfig<R> {
+impl MountConfig {
+    /// Along x and along y: stiffness and damping.
+    pub fn axes(&self) -> [[f64; 2]; 2] {
+        let along_x = [self.stiffness, self.damping];
+        [along_x, self.vertical.unwrap_or(along_x)]
+    }
+
     fn check(&self) -> Result<(), ConfigError> {
         positive("support_mass", self.mass)?;
         positive("stiffness", self.stiffness)?;
@@ -139,13 +142,8 @@ impl<R: Real> Ride<R> {
 
     /// Whether dry friction leaves the ring where it is.
     pub(super) fn rests(&self) -> bool {
-        matches!(
-            self.dry,
-            Some(Dry {
-                rub: Rub::Rests(_),
-                ..
-            })
-        )
+        let rub = self.dry.map(|it| it.rub);
+        matches!(rub, Some(Rub::Rests(_)))
     }
 
     pub(super) fn rests_on_stop(&self) -> bool {
@@ -201,7 +199,7 @@ enum StopLaw<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sprung<R> {
     /// Over the rotor's.
-    mass: R,
+    pub(super) mass: R,
     across: AxisSpring<R>,
     /// Where it is another than across.
     vertical: Option<AxisSpring<R>>,
@@ -213,95 +211,46 @@ pub(super) struct Sprung<R> {
 /// The ring's motion, and what the support has taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SprungState<R> {
-    place: Sums<R>,
-    velocity: Sums<R>,
-    stopped: bool,
-    rests: bool,
+    pub(super) place: Sums<R>,
+    pub(super) velocity: Sums<R>,
+    /// Whether the hard stop holds the ring, and whether dry friction does.
+    pub(super) stopped: bool,
+    pub(super) rests: bool,
     damped: Sum<R>,
     stopping: Sum<R>,
 }
 
-impl<R: Real> SprungState<R> {
-    pub(super) fn place(&self) -> Vector<R> {
-        self.place.value()
-    }
-
-    pub(super) fn velocity(&self) -> Vector<R> {
-        self.velocity.value()
-    }
-
-    /// Whether the hard stop holds the ring.
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stopped
-    }
-
-    /// Whether dry friction holds it.
-    pub(super) fn rests(&self) -> bool {
-        self.rests
-    }
-}
-
-impl Sprung<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> Sprung<R> {
-        let axis = |it: AxisSpring<f64>| AxisSpring {
-            stiffness: R::lit(it.stiffness),
-            damping: R::lit(it.damping),
-            braced: R::lit(it.braced),
-        };
-        Sprung {
-            mass: R::lit(self.mass),
-            across: axis(self.across),
-            vertical: self.vertical.map(axis),
-            friction: R::lit(self.friction),
-            stop: self.stop.map(|it| match it {
-                StopLaw::Rigid(travel) => StopLaw::Rigid(R::lit(travel)),
-                StopLaw::Gives(it) => StopLaw::Gives(it.rounded()),
-            }),
-        }
-    }
-}
-
-impl<R: Real> AxisSpring<R> {
-    fn try_new([stiffness, damping]: [R; 2], mass: R, half: R) -> Result<Self, ConfigError> {
-        positive("stiffness", stiffness)?;
-        let implicit = half * (damping + half * stiffness);
-        let braced = mass + implicit * (implicit / (mass + implicit));
-        positive("stiffness", R::ONE / braced)?;
-        Ok(Self {
-            stiffness,
-            damping,
-            braced,
-        })
-    }
-}
-
 impl<R: Precision> Sprung<R> {
-    pub(super) fn try_new(config: &MountConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
+    pub(super) fn try_new(config: &MountConfig, units: &Units) -> Result<Self, ConfigError> {
         config.check()?;
         let time = units.scales.time;
         let mass = config.mass / units.mass;
         positive("support_mass", mass)?;
-        let axis = |[stiffness, damping]: [R; 2]| {
-            let scaled = [
-                stiffness / units.mass * time * time,
-                damping / units.mass * time,
-            ];
-            AxisSpring::try_new(scaled, mass, R::HALF * units.step)
+        let axis = |[stiffness, damping]: [f64; 2]| {
+            let stiffness = stiffness / units.mass * time * time;
+            let damping = damping / units.mass * time;
+            positive("stiffness", stiffness)?;
+            let half = 0.5 * units.step;
+            let implicit = half * (damping + half * stiffness);
+            let braced = mass + implicit * (implicit / (mass + implicit));
+            positive("stiffness", 1.0 / braced)?;
+            Ok(AxisSpring {
+                stiffness: R::lit(stiffness),
+                damping: R::lit(damping),
+                braced: R::lit(braced),
+            })
         };
-        let stop = |it: &StopConfig<R>| {
+        let stop = |it: &StopConfig| {
             let travel = it.travel / units.scales.length;
-            match it.stiffness {
-                None => StopLaw::Rigid(travel),
-                Some(it) => {
-                    StopLaw::Gives(Compliant::spring(it / units.mass * time * time, travel))
-                }
-            }
+            let spring = |it| Compliant::spring(it / units.mass * time * time, travel);
+            let rigid = StopLaw::Rigid(R::lit(travel));
+            it.stiffness.map_or(rigid, |it| StopLaw::Gives(spring(it)))
         };
         Ok(Self {
-            mass,
+            mass: R::lit(mass),
             across: axis([config.stiffness, config.damping])?,
             vertical: config.vertical.map(axis).transpose()?,
-            friction: config.friction / units.mass * time / units.scales.speed,
+            friction: R::lit(config.friction / units.mass * time / units.scales.speed),
             stop: config.stop.as_ref().map(stop),
         })
     }
@@ -460,11 +409,6 @@ impl<R: Precision> Sprung<R> {
         }
     }
 
-    /// Work of the base's motion.
-    pub(super) fn shaken(&self, push: Vector<R>, moved: Vector<R>) -> R {
-        self.mass * push.dot(moved)
-    }
-
     /// Velocity by an impulse.
     pub(super) fn mobility(&self) -> R {
         R::ONE / self.mass
@@ -564,10 +508,6 @@ impl<R: Precision> Sprung<R> {
         state.stopped = true;
         let work = middle.dot_along(moved, self.each(|it| it.stiffness));
         state.stopping.add(-work);
-    }
-
-    pub(super) fn release(&self, state: &mut SprungState<R>) {
-        state.stopped = false;
     }
 
     /// Kinetic, in spring and stop; taken by support and stop.

@@ -4,7 +4,8 @@
 //! stretch asks for them, again and again; where that gains little, as for a light ring between rotor and stop, by
 //! Broyden's method (Broyden, "A class of methods for solving nonlinear simultaneous equations", 1965).
 
-use super::passage::{REACH, Walls};
+use super::links::{Links, contact, stop};
+use super::passage::REACH;
 use super::vector::Vector;
 use super::{Coupled, CoupledState};
 use touchdown_rotor::precision::Precision;
@@ -93,38 +94,44 @@ impl<R: Real> Search<R> {
 
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// Finds impulses and normals; false where there are none, or a wall is gone round too far.
-    pub(super) fn settle(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> bool {
-        let half = R::HALF * walls.time;
+    pub(super) fn settle(
+        &self,
+        state: &CoupledState<R, N, Q>,
+        links: &mut Links<R, N>,
+        time: R,
+    ) -> bool {
+        let half = R::HALF * time;
         let surfaces: [R; N] = core::array::from_fn(|i| {
-            let link = walls.contacts[i].and_then(|it| walls.links.get(it));
+            let link = links.get(contact(i));
             link.map_or(R::ZERO, |link| link.surface)
         });
         let mut search = Search::new();
         let (mut changed, mut farthest) = (R::INFINITY, R::INFINITY);
         for _ in 0..NORMALS {
             for i in 0..N {
-                if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get_mut(it)) {
+                if let Some(link) = links.get_mut(contact(i)) {
                     // Friction is for the slip at the end: twice the mean less that at the start.
                     let along = half * link.normal.cross(self.relative(state, i));
                     link.surface = surfaces[i] - along;
                     link.before = half * self.surface(state, i) + along;
                 }
             }
-            if !walls.links.solve() {
+            if !links.solve() {
                 return false;
             }
             let mut off = [R::ZERO; MOST];
             let mut wanted = [Vector::default(); MOST];
             farthest = R::ZERO;
             for i in 0..N {
-                let places = [walls.contacts[i], walls.stops[i]];
-                let from = [self.within(state, i), state.ring_place(i)];
-                for (place, from) in places.into_iter().zip(from) {
-                    let Some((place, link)) = place.and_then(|it| Some((it, walls.links.get(it)?)))
-                    else {
+                let places = [
+                    (contact(i), self.within(state, i)),
+                    (stop(i), state.ring_place(i)),
+                ];
+                for (place, from) in places {
+                    let Some(link) = links.get(place) else {
                         continue;
                     };
-                    let moved = walls.links.motion(place);
+                    let moved = links.motion(place);
                     farthest = farthest.most(moved.length() / from.length());
                     let sum = from.times(R::TWO) + moved;
                     wanted[place] = sum.times(R::ONE / sum.length());
@@ -132,10 +139,10 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 }
             }
             changed = Search::size(&off);
-            changed = changed.most(self.linearize_all(state, walls));
+            changed = changed.most(self.linearize_all(state, links, time));
             let turns = search.next(off);
             for (place, wanted) in wanted.into_iter().enumerate() {
-                if let Some(link) = walls.links.get_mut(place) {
+                if let Some(link) = links.get_mut(place) {
                     link.normal = match turns {
                         None => wanted,
                         Some(turns) => {
@@ -153,23 +160,23 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Of all walls and stops that give way; the most.
-    fn linearize_all(&self, state: &CoupledState<R, N, Q>, walls: &mut Walls<R, N>) -> R {
+    fn linearize_all(&self, state: &CoupledState<R, N, Q>, links: &mut Links<R, N>, time: R) -> R {
         let mut most = R::ZERO;
         for (i, ring) in self.rings.iter().enumerate() {
-            let stop = ring.mount.as_ref().and_then(|it| it.soft_stop());
-            if let (Some(place), Some(stop)) = (walls.stops[i], stop) {
-                let moved = walls.links.motion(place);
-                let from = (state.ring_place(i), walls.time);
-                if let Some(link) = walls.links.get_mut(place) {
-                    most = most.most(stop.linearize(link, None, from, moved));
+            let soft = ring.mount.as_ref().and_then(|it| it.soft_stop());
+            if let Some(soft) = soft
+                && links.get(stop(i)).is_some()
+            {
+                let (from, moved) = ((state.ring_place(i), time), links.motion(stop(i)));
+                if let Some(link) = links.get_mut(stop(i)) {
+                    most = most.most(soft.linearize(link, None, from, moved));
                 }
             }
-            let (Some(place), Some(_)) = (walls.contacts[i], &ring.compliant) else {
-                continue;
-            };
-            let moved = walls.links.motion(place);
-            if let Some(link) = walls.links.get_mut(place) {
-                most = most.most(self.linearize(state, i, walls.time, link, moved));
+            if ring.compliant.is_some() && links.get(contact(i)).is_some() {
+                let moved = links.motion(contact(i));
+                if let Some(link) = links.get_mut(contact(i)) {
+                    most = most.most(self.linearize(state, i, time, link, moved));
+                }
             }
         }
         most

@@ -4,15 +4,16 @@
 //! its rows. Walls act along the middle of the places before and after, so that they do no work; that
 //! normal is found by repetition.
 
+use core::array::from_fn;
+
 use super::compliant::Compliant;
 use super::config::MAGNETS;
-use super::links::{Grip, Link, Links};
-use super::mount::{Ride, Rub};
+use super::links::{Grip, Link, Links, contact, stop};
+use super::mount::{Ride, Rub, Sprung};
 use super::race::{Drag, Turning};
 use super::vector::{Mobility, Vector, inverse, turned_by};
 use super::{Coupled, CoupledState, at, product};
 use touchdown_rotor::precision::Precision;
-use touchdown_rotor::real::Real;
 
 /// Values of the drags: against the turning, none, against the new turning.
 const DRAGS: usize = 3;
@@ -25,25 +26,15 @@ pub(super) const REACH: f64 = 0.25;
 /// a radian in a stretch slips by less in its mean.
 const MOST_GAINED: f64 = 0.01;
 
-/// A contact in a stretch; impulses as the displacement that they give a rotor free to move: times half the
-/// stretch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Press<R> {
-    pub(super) pressed: R,
-    pub(super) rubbed: R,
-    /// Outward normal in the middle.
-    pub(super) normal: Vector<R>,
-    pub(super) stuck: bool,
-}
-
-/// A stretch.
+/// A stretch; impulses as the displacement that they give a rotor free to move: times half its time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage<R, const N: usize, const Q: usize> {
     pub(super) time: R,
     pub(super) moved: [Vector<R>; Q],
     pub(super) kick: [Vector<R>; Q],
     pub(super) rides: [Ride<R>; N],
-    pub(super) presses: [Option<Press<R>>; N],
+    /// Of each ring's wall, where the axis presses on it.
+    pub(super) presses: [Option<Link<R>>; N],
     /// Force of the magnets beyond what displacement and velocity ask for: what their limits leave out.
     pub(super) cut: Option<[Vector<R>; MAGNETS]>,
     /// Displacement of the rings by rotor and stop.
@@ -66,27 +57,6 @@ pub(super) struct Passage<R, const N: usize, const Q: usize> {
 }
 
 impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
-    fn new(time: R) -> Self {
-        Self {
-            time,
-            moved: [Vector::default(); Q],
-            kick: [Vector::default(); Q],
-            rides: [Ride::default(); N],
-            presses: [None; N],
-            cut: None,
-            pushed: [[Vector::default(); 2]; N],
-            stopped: [false; N],
-            drags: [Drag::Runs(R::ZERO); N],
-            spun: R::ZERO,
-            unbalance: [Vector::default(); Q],
-            shaken: None,
-            rubs: true,
-            solved: true,
-            systems: 0,
-            inverse: [[Vector::default(); Q]; Q],
-        }
-    }
-
     /// Takes all walls out.
     fn clear(&mut self) {
         self.presses = [None; N];
@@ -117,50 +87,26 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
     }
 }
 
-/// Links and whose they are.
-pub(super) struct Walls<R, const N: usize> {
-    pub(super) time: R,
-    pub(super) links: Links<R, N>,
-    pub(super) contacts: [Option<usize>; N],
-    pub(super) stops: [Option<usize>; N],
-}
-
-impl<R: Real, const N: usize> Walls<R, N> {
-    fn new(time: R) -> Self {
-        Self {
-            time,
-            links: Links::new(),
-            contacts: [None; N],
-            stops: [None; N],
-        }
-    }
-}
-
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The next `time`.
     pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
-        let mut passage = Passage::new(time);
-        self.free(state, &mut passage);
+        let mut passage = self.free(state, time);
+        self.press(state, &mut passage);
         if self.repeats {
-            self.press_by_repetition(state, &mut passage);
-        } else {
-            self.press(state, &mut passage);
+            self.repeat(state, &mut passage);
         }
         passage
     }
 
-    /// [`Coupled::press`], with the parts that depend on what comes of it.
-    fn press_by_repetition(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
-        self.press(state, passage);
+    /// Again, with what depends on what comes of it.
+    fn repeat(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         for repetition in 1..REPETITIONS {
             if !passage.solved {
                 break;
             }
-            let turns = repetition < DRAGS && self.correct_drags(state, passage);
-            let last = repetition + 1 == REPETITIONS;
-            let rubs = self.correct_mounts(state, passage, last);
+            let rings = self.correct_rings(state, passage, repetition);
             let cuts = self.correct_magnets(state, passage);
-            if !turns && !rubs && !cuts {
+            if !rings && !cuts {
                 break;
             }
             passage.clear();
@@ -169,65 +115,70 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Drags that the passage shows to be others; whether there are any.
-    fn correct_drags(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) -> bool {
-        let mut changed = false;
-        for (i, ring) in self.rings.iter().enumerate() {
-            let (drag, rub) = (passage.drags[i], passage.rub(i));
-            let other = ring
-                .race
-                .as_ref()
-                .and_then(|it| it.corrected(&state.seats[i].race, passage.time, drag, rub));
-            if let Some(other) = other {
-                (passage.drags[i], changed) = (other, true);
-            }
-        }
-        changed
-    }
-
-    /// The same of the dry friction of mounts; what is not found by the last repetition gives nothing.
-    fn correct_mounts(
+    /// Drags of inner rings and dry friction of mounts that the passage shows to be others; whether there are any. Friction
+    /// that is not found by the last repetition gives nothing.
+    fn correct_rings(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &mut Passage<R, N, Q>,
-        last: bool,
+        repetition: usize,
     ) -> bool {
-        let mut changed = false;
-        for (i, ring) in self.rings.iter().enumerate() {
-            let (mount, time) = (&state.seats[i].mount, passage.time);
-            let Some(it) = ring.mount.as_ref().filter(|it| it.rubs()) else {
-                continue;
-            };
-            if let Some(rub) = it.corrected(mount, &passage.rides[i], time, passage.pushed[i]) {
+        let (time, mut changed) = (passage.time, false);
+        for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
+            let (drag, ride, pushed) = (passage.drags[i], &passage.rides[i], passage.pushed[i]);
+            if let Some(mount) = &ring.mount
+                && let Some(rub) = mount.corrected(&seat.mount, ride, time, pushed)
+            {
+                let last = repetition + 1 == REPETITIONS;
                 let rub = if last { Rub::Turns } else { rub };
-                passage.rides[i] = it.ride(mount, time, passage.shaken, Some(rub));
+                passage.rides[i] = mount.ride(&seat.mount, time, passage.shaken, Some(rub));
                 changed = true;
+            }
+            if let Some(race) = ring.race.as_ref().filter(|_| repetition < DRAGS)
+                && let Some(drag) = race.corrected(&seat.race, time, drag, passage.rub(i))
+            {
+                (passage.drags[i], changed) = (drag, true);
             }
         }
         changed
     }
 
     /// Without any wall.
-    fn free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
-        let time = passage.time;
-        passage.shaken = self.shaken(state, time);
-        for (i, (ring, seat)) in self.rings.iter().zip(&state.seats).enumerate() {
-            if let Some(mount) = &ring.mount {
-                let rub = mount.guess(&seat.mount);
-                passage.rides[i] = mount.ride(&seat.mount, time, passage.shaken, rub);
-            }
-            if let Some(race) = &ring.race {
-                passage.drags[i] = race.guess(&seat.race);
-            }
-        }
-        if self.repeats {
-            passage.cut = self.cut_at_first(state);
-        }
-        passage.unbalance = self.unbalance(state, time);
-        self.go_free(state, passage);
+    fn free(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
+        let shaken = self.shaken(state, time);
+        let ride = |i: usize| {
+            let (mount, state) = (self.rings[i].mount.as_ref(), &state.seats[i].mount);
+            let ride = |it: &Sprung<R>| it.ride(state, time, shaken, it.guess(state));
+            mount.map_or(Ride::default(), ride)
+        };
+        let drag = |i: usize| {
+            let race = self.rings[i].race.as_ref();
+            race.map_or(Drag::Runs(R::ZERO), |it| it.guess(&state.seats[i].race))
+        };
+        let limited = self.repeats.then(|| self.cut_at_first(state));
+        let mut passage = Passage {
+            time,
+            moved: [Vector::default(); Q],
+            kick: [Vector::default(); Q],
+            rides: from_fn(ride),
+            presses: [None; N],
+            cut: limited.flatten(),
+            pushed: [[Vector::default(); 2]; N],
+            stopped: [false; N],
+            drags: from_fn(drag),
+            spun: R::ZERO,
+            unbalance: self.unbalance(state, time),
+            shaken,
+            rubs: true,
+            solved: true,
+            systems: 0,
+            inverse: [[Vector::default(); Q]; Q],
+        };
+        self.go_free(state, &mut passage);
+        passage
     }
 
-    pub(super) fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
+    fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         let (time, half) = (passage.time, R::HALF * passage.time);
         let (places, velocities) = (state.places(), state.velocities());
         let nutation = self.gyration * state.spin.value();
@@ -313,35 +264,25 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !(0..N).any(presses) {
             return;
         }
-        let mut walls = Walls::new(passage.time);
-        if !self.solve_walls(state, passage, &mut walls) {
+        let Some(links) = self.solve_walls(state, passage) else {
             passage.solved = false;
             return;
-        }
+        };
         let rate = R::TWO / passage.time;
         let mut pushes = [Vector::default(); Q];
         for (i, ring) in self.rings.iter().enumerate() {
             let ride = &passage.rides[i];
             passage.stopped[i] = ride.rests_on_stop();
-            if let Some(link) = walls.contacts[i].and_then(|it| walls.links.get(it))
-                && link.grip != Grip::Open
-            {
+            if let Some(link) = links.pressing(contact(i)) {
                 let push = link.push();
-                passage.presses[i] = Some(Press {
-                    pressed: link.pressed,
-                    rubbed: link.rubbed,
-                    normal: link.normal,
-                    stuck: link.is_stuck(),
-                });
+                passage.presses[i] = Some(*link);
                 for (sum, b) in pushes.iter_mut().zip(&ring.shape) {
                     *sum = *sum + push.times(*b);
                 }
                 passage.pushed[i][0] = ride.pushed(Vector::default() - push);
                 passage.spun += rate * ring.surface * link.rubbed / self.inertia_ratio;
             }
-            if let Some(link) = walls.stops[i].and_then(|it| walls.links.get(it))
-                && link.grip != Grip::Open
-            {
+            if let Some(link) = links.pressing(stop(i)) {
                 passage.pushed[i][1] = ride.pushed(link.push());
                 passage.stopped[i] = state.is_stopped(i);
             }
@@ -355,26 +296,25 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
     }
 
-    /// Adds and solves all walls of a passage, without friction where they jam with it; false where nothing was found.
+    /// All walls of a passage, solved, without friction where they jam with it; none where nothing was found.
     fn solve_walls(
         &self,
         state: &CoupledState<R, N, Q>,
         passage: &mut Passage<R, N, Q>,
-        walls: &mut Walls<R, N>,
-    ) -> bool {
-        self.add_walls(state, passage, walls);
-        let settles = self.settle(state, walls);
-        passage.systems += walls.links.systems;
-        passage.rubs = settles && !self.gains(state, walls, passage.time);
-        if passage.rubs {
-            return true;
+    ) -> Option<Links<R, N>> {
+        for rubs in [true, false] {
+            let mut links = self.walls(state, passage);
+            if !rubs {
+                links.smooth();
+            }
+            let settles = self.settle(state, &mut links, passage.time);
+            passage.systems += links.systems;
+            passage.rubs = rubs && settles && !self.gains(state, &links, passage.time);
+            if passage.rubs || (!rubs && settles) {
+                return Some(links);
+            }
         }
-        *walls = Walls::new(passage.time);
-        self.add_walls(state, passage, walls);
-        walls.links.smooth();
-        let settles = self.settle(state, walls);
-        passage.systems += walls.links.systems;
-        settles
+        None
     }
 
     /// The stop that gives way of a ring that dry friction does not hold.
@@ -397,7 +337,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// The wall of a ring that the rotor is held by; `turning` is the speed of the inner ring.
-    fn contact(
+    fn held_wall(
         &self,
         state: &CoupledState<R, N, Q>,
         free: &Passage<R, N, Q>,
@@ -405,8 +345,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         turning: R,
     ) -> Option<Link<R>> {
         let (ring, held) = (&self.rings[i], state.seats[i].held.as_ref()?);
-        let place = self.within(state, i);
-        let normal = place.times(R::ONE / place.length());
+        let normal = self.within(state, i).unit();
         let slip = normal.cross(self.relative(state, i)) + self.surface(state, i);
         let moved = at(&ring.shape, &free.moved) - free.rides[i].moved;
         let mut link = Link::new(normal, moved);
@@ -440,79 +379,88 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         compliant.linearize(link, Some(soft), (from, time), moved)
     }
 
-    /// Adds the walls that hold at the start, with what moves in them.
-    fn add_walls(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        free: &Passage<R, N, Q>,
-        walls: &mut Walls<R, N>,
-    ) {
+    /// The walls that hold at the start, with what moves in them.
+    fn walls(&self, state: &CoupledState<R, N, Q>, free: &Passage<R, N, Q>) -> Links<R, N> {
+        let mut links = Links::new();
         let mut turnings = [Turning::default(); N];
         for (i, ring) in self.rings.iter().enumerate() {
             if let Some(race) = &ring.race {
                 turnings[i] = race.turning(&state.seats[i].race, free.time, free.drags[i]);
             }
-            if let Some(mut link) = self.contact(state, free, i, turnings[i].free) {
+            if let Some(mut link) = self.held_wall(state, free, i, turnings[i].free) {
                 let moved = link.free;
                 self.linearize(state, i, free.time, &mut link, moved);
-                walls.contacts[i] = Some(walls.links.add(link));
+                links.put(contact(i), link);
             }
             let soft = self.near_stop(state, free, i);
             if soft.is_some() || (state.is_stopped(i) && !free.rides[i].rests()) {
                 let place = state.ring_place(i);
-                let normal = place.times(R::ONE / place.length());
-                let mut link = Link::new(normal, free.rides[i].moved);
-                if let Some(stop) = soft {
+                let mut link = Link::new(place.unit(), free.rides[i].moved);
+                if let Some(soft) = soft {
                     let moved = link.free;
-                    stop.linearize(&mut link, None, (place, free.time), moved);
+                    soft.linearize(&mut link, None, (place, free.time), moved);
                 }
-                walls.stops[i] = Some(walls.links.add(link));
+                links.put(stop(i), link);
             }
         }
+        let moved = |i: usize, j: usize| {
+            let (to, from) = (&self.rings[i].shape, &self.rings[j].shape);
+            let all = to.iter().zip(&free.inverse);
+            all.fold(Vector::default(), |sum, (b, row)| {
+                sum + at(from, row).times(*b)
+            })
+        };
+        let own = |i: usize| {
+            (
+                Mobility::along(free.rides[i].mobility),
+                turnings[i].mobility,
+            )
+        };
+        self.respond(&mut links, moved, own);
+        links
+    }
+
+    /// Tells links of what their impulses move: the rotor in one ring by another, and each ring and inner ring by its own.
+    pub(super) fn respond(
+        &self,
+        links: &mut Links<R, N>,
+        moved: impl Fn(usize, usize) -> Vector<R>,
+        own: impl Fn(usize) -> (Mobility<R>, R),
+    ) {
         for (i, ring) in self.rings.iter().enumerate() {
-            let mobility = Mobility::along(free.rides[i].mobility);
-            let back = mobility.back();
+            let (mobility, turning) = own(i);
             for (j, other) in self.rings.iter().enumerate() {
-                let (Some(to), Some(from)) = (walls.contacts[i], walls.contacts[j]) else {
+                if links.get(contact(i)).and(links.get(contact(j))).is_none() {
                     continue;
+                }
+                let spin = ring.surface * other.surface / self.inertia_ratio;
+                let (motion, spin) = if i == j {
+                    (mobility + moved(i, j), spin + turning)
+                } else {
+                    (Mobility::default() + moved(i, j), spin)
                 };
-                let mut turned = Vector::default();
-                for (k, b) in ring.shape.iter().enumerate() {
-                    turned = turned + at(&other.shape, &free.inverse[k]).times(*b);
-                }
-                let mut motion = Mobility::default() + turned;
-                let mut spin = ring.surface * other.surface / self.inertia_ratio;
-                if i == j {
-                    motion = mobility + turned;
-                    spin += turnings[i].mobility;
-                }
-                walls.links.respond(to, from, motion, spin);
+                links.respond(contact(i), contact(j), motion, spin);
             }
-            if let Some(stop) = walls.stops[i] {
-                walls.links.respond(stop, stop, mobility, R::ZERO);
-                if let Some(contact) = walls.contacts[i] {
-                    walls.links.respond(stop, contact, back, R::ZERO);
-                    walls.links.respond(contact, stop, back, R::ZERO);
-                }
+            if links.get(stop(i)).is_some() {
+                links.respond(stop(i), stop(i), mobility, R::ZERO);
+                links.respond(stop(i), contact(i), mobility.back(), R::ZERO);
+                links.respond(contact(i), stop(i), mobility.back(), R::ZERO);
             }
         }
     }
 
     /// Whether friction gives more than what its sticking is uncertain by.
-    fn gains(&self, state: &CoupledState<R, N, Q>, walls: &Walls<R, N>, time: R) -> bool {
+    fn gains(&self, state: &CoupledState<R, N, Q>, links: &Links<R, N>, time: R) -> bool {
         let (mut heat, mut size) = (R::ZERO, R::ZERO);
         for i in 0..N {
-            let Some(place) = walls.contacts[i] else {
+            let Some(link) = links.get(contact(i)) else {
                 continue;
             };
-            let Some(link) = walls.links.get(place) else {
-                continue;
-            };
-            let moved = walls.links.motion(place);
+            let moved = links.motion(contact(i));
             let velocity = self.relative(state, i);
             let start = R::HALF * time * self.surface(state, i);
             // What the link knows is the surface at the end less half of the velocity before.
-            let end = walls.links.surface(place) + R::HALF * time * link.normal.cross(velocity);
+            let end = links.surface(contact(i)) + R::HALF * time * link.normal.cross(velocity);
             let slip = link.normal.cross(moved) + start + end;
             heat += -(link.rubbed * slip);
             let least = R::EPSILON.sqrt() * start.abs();

@@ -5,7 +5,7 @@
 //! = 1/(1 + z + z^2/2), z = h d_1/b, is the decay to second order, without swing at any step, and g = (1 - E)/(h d_1). The dry
 //! drag D is h d_0 or less, and stops the ring: D is then what leaves s+ = 0. Temperature alike.
 
-use super::units::Units;
+use super::Units;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::{not_negative, positive};
@@ -13,28 +13,28 @@ use touchdown_rotor::sum::Sum;
 
 /// A ball bearing, SI. Its bore is the rotor's radius and the clearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RaceConfig<R> {
+pub struct RaceConfig {
     /// Of the inner ring and what turns with it, kg m^2.
-    pub inertia: R,
+    pub inertia: f64,
     /// Drag that does not depend on the speed, N m, 0 or more.
-    pub dry_drag: R,
+    pub dry_drag: f64,
     /// Drag over speed, N m s, 0 or more.
-    pub viscous_drag: R,
+    pub viscous_drag: f64,
     /// Speed of the cage over that of the inner ring, 0 to 1: half of 1 - ball over pitch diameter.
-    pub cage_ratio: R,
+    pub cage_ratio: f64,
     /// J/K.
-    pub heat_capacity: R,
+    pub heat_capacity: f64,
     /// To the surroundings, W/K, 0 or more.
-    pub heat_loss: R,
+    pub heat_loss: f64,
 }
 
-impl<R: Real> RaceConfig<R> {
+impl RaceConfig {
     fn check(&self) -> Result<(), ConfigError> {
         positive("race_inertia", self.inertia)?;
         not_negative("dry_drag", self.dry_drag)?;
         not_negative("viscous_drag", self.viscous_drag)?;
         not_negative("cage_ratio", self.cage_ratio)?;
-        if self.cage_ratio > R::ONE {
+        if self.cage_ratio > 1.0 {
             return Err(ConfigError::OutOfRange("cage_ratio", "0 to 1"));
         }
         positive("heat_capacity", self.heat_capacity)?;
@@ -110,44 +110,28 @@ fn decay<R: Real>(z: R) -> (R, R) {
     (z * half * kept, half * kept)
 }
 
-impl BallBearing<f64> {
-    pub(super) fn rounded<R: Real>(&self) -> BallBearing<R> {
-        BallBearing {
-            inertia: R::lit(self.inertia),
-            dry: R::lit(self.dry),
-            viscous: R::lit(self.viscous),
-            turn: R::lit(self.turn),
-            cage: R::lit(self.cage),
-            warming: R::lit(self.warming),
-            cooling: R::lit(self.cooling),
-        }
-    }
-}
-
 impl<R: Real> BallBearing<R> {
     fn take_heat(&self, state: &mut BallBearingState<R>, time: R, heat: R) {
         let (lost, left) = decay(time * self.cooling);
         let cooled = lost * state.temperature.value();
         state.temperature.add(self.warming * heat * left - cooled);
     }
-}
 
-impl<R: Real> BallBearing<R> {
-    pub(super) fn try_new(config: &RaceConfig<R>, units: &Units<R>) -> Result<Self, ConfigError> {
+    pub(super) fn try_new(config: &RaceConfig, units: &Units) -> Result<Self, ConfigError> {
         config.check()?;
         let scales = &units.scales;
         let moment = units.mass * units.bore;
         let inertia = config.inertia / moment / units.bore;
         positive("race_inertia", inertia)?;
-        positive("race_inertia", R::ONE / inertia)?;
+        positive("race_inertia", 1.0 / inertia)?;
         Ok(Self {
-            inertia,
-            dry: config.dry_drag / moment * scales.time / scales.speed,
-            viscous: config.viscous_drag / moment / units.bore * scales.time,
-            turn: units.radius / units.bore,
-            cage: config.cage_ratio,
-            warming: units.mass * scales.speed * scales.speed / config.heat_capacity,
-            cooling: config.heat_loss / config.heat_capacity * scales.time,
+            inertia: R::lit(inertia),
+            dry: R::lit(config.dry_drag / moment * scales.time / scales.speed),
+            viscous: R::lit(config.viscous_drag / moment / units.bore * scales.time),
+            turn: R::lit(units.radius / units.bore),
+            cage: R::lit(config.cage_ratio),
+            warming: R::lit(units.mass * scales.speed * scales.speed / config.heat_capacity),
+            cooling: R::lit(config.heat_loss / config.heat_capacity * scales.time),
         })
     }
 

@@ -5,7 +5,7 @@
 //! speeds across the wall before and after a stretch has no swing. What that takes is given back along the
 //! motion, so that the energy stays.
 
-use super::links::{Link, Links};
+use super::links::{Link, Links, contact};
 use super::mount::OFF;
 use super::passage::Passage;
 use super::vector::{Mobility, Vector};
@@ -23,37 +23,33 @@ pub(super) struct AtWall<R> {
 }
 
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
-    /// Links of the held rings; each is to change by `wanted` along its normal, and rings move by `yields`.
+    /// Links of the held rings, which move by `motion` and give way by `yields`.
     fn held(
         &self,
         state: &CoupledState<R, N, Q>,
         motion: impl Fn(usize) -> Vector<R>,
         yields: impl Fn(usize) -> R,
-    ) -> (Links<R, N>, [Option<usize>; N]) {
+    ) -> Links<R, N> {
         let mut links = Links::new();
-        let mut places = [None; N];
-        for (i, place) in places.iter_mut().enumerate() {
-            if state.lies(i) {
-                let within = self.within(state, i);
-                let normal = within.times(R::ONE / within.length());
-                *place = Some(links.add(Link::new(normal, motion(i))));
+        for i in (0..N).filter(|i| state.lies(*i)) {
+            links.put(
+                contact(i),
+                Link::new(self.within(state, i).unit(), motion(i)),
+            );
+        }
+        for i in (0..N).filter(|i| state.lies(*i)) {
+            for j in (0..N).filter(|j| state.lies(*j)) {
+                let own = if i == j { yields(i) } else { R::ZERO };
+                let mobility = Mobility::real(self.mobility(i, j) + own);
+                links.respond(contact(i), contact(j), mobility, R::ZERO);
             }
         }
-        for i in 0..N {
-            for j in 0..N {
-                if let (Some(to), Some(from)) = (places[i], places[j]) {
-                    let own = if i == j { yields(i) } else { R::ZERO };
-                    let mobility = self.mobility(i, j) + own;
-                    links.respond(to, from, Mobility::real(mobility), R::ZERO);
-                }
-            }
-        }
-        (links, places)
+        links
     }
 
     /// Velocity of a ring by an impulse; dry friction holds a ring that rests.
     fn ring_mobility(&self, state: &CoupledState<R, N, Q>, ring: usize) -> R {
-        let moves = !state.seats[ring].mount.rests();
+        let moves = !state.seats[ring].mount.rests;
         let mount = self.rings[ring].mount.as_ref().filter(|_| moves);
         mount.map_or(R::ZERO, |it| it.mobility())
     }
@@ -70,21 +66,20 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if !(0..N).any(|i| state.lies(i)) {
             return;
         }
-        let (mut links, places) = self.held(
+        let mut links = self.held(
             state,
             |i| self.relative(state, i),
             |i| self.ring_mobility(state, i),
         );
-        for (i, place) in places.iter().enumerate() {
-            let link = place.and_then(|place| links.get_mut(place));
-            if let (Some(link), Some(before)) = (link, before[i]) {
+        for (i, before) in before.iter().enumerate() {
+            if let (Some(link), Some(before)) = (links.get_mut(contact(i)), before) {
                 let speed = before.place.dot(before.velocity) / before.place.length();
                 link.wanted = R::HALF * (speed + link.normal.dot(link.free));
             }
         }
         links.solve_linear();
-        for (i, place) in places.iter().enumerate() {
-            if let Some(link) = place.and_then(|place| links.get(place)) {
+        for i in 0..N {
+            if let Some(link) = links.get(contact(i)) {
                 self.give(state, i, link.push());
             }
         }
@@ -123,7 +118,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     fn give(&self, state: &mut CoupledState<R, N, Q>, ring: usize, push: Vector<R>) {
         state.kick(&self.rings[ring].shape, push);
         if let Some(mount) = &self.rings[ring].mount
-            && !state.seats[ring].mount.rests()
+            && !state.seats[ring].mount.rests
         {
             let back = Vector::default() - push;
             mount.kick(&mut state.seats[ring].mount, back);
@@ -134,7 +129,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// rounding.
     pub(super) fn seat(&self, state: &mut CoupledState<R, N, Q>) {
         for (ring, seat) in self.rings.iter().zip(&mut state.seats) {
-            if let Some(mount) = ring.mount.as_ref().filter(|_| seat.mount.is_stopped()) {
+            if let Some(mount) = ring.mount.as_ref().filter(|_| seat.mount.stopped) {
                 mount.seat(&mut seat.mount);
             }
         }
@@ -142,17 +137,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if off <= R::lit(OFF) * R::EPSILON {
             return;
         }
-        let (mut links, places) = self.held(state, |_| Vector::default(), |_| R::ZERO);
-        for (i, place) in places.iter().enumerate() {
-            if let Some(link) = place.and_then(|place| links.get_mut(place)) {
-                link.wanted = self.rings[i].limit - link.normal.dot(self.within(state, i));
+        let mut links = self.held(state, |_| Vector::default(), |_| R::ZERO);
+        for (i, ring) in self.rings.iter().enumerate() {
+            if let Some(link) = links.get_mut(contact(i)) {
+                link.wanted = ring.limit - link.normal.dot(self.within(state, i));
             }
         }
         links.solve_linear();
         let mut seated = *state;
-        for (i, place) in places.iter().enumerate() {
-            if let Some(link) = place.and_then(|place| links.get(place)) {
-                for (sums, b) in seated.place.iter_mut().zip(&self.rings[i].shape) {
+        for (i, ring) in self.rings.iter().enumerate() {
+            if let Some(link) = links.get(contact(i)) {
+                for (sums, b) in seated.place.iter_mut().zip(&ring.shape) {
                     sums.add(link.push().times(*b));
                 }
             }
@@ -198,9 +193,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// be held by it.
     pub(super) fn rub(&self, state: &mut CoupledState<R, N, Q>, i: usize, impulse: R) -> bool {
         let ring = &self.rings[i];
-        let within = self.within(state, i);
-        let normal = within.times(R::ONE / within.length());
-        let rests = state.seats[i].mount.rests();
+        let normal = self.within(state, i).unit();
+        let rests = state.seats[i].mount.rests;
         let stands = state.is_stopped(i) || rests || ring.mount.is_none();
         let velocity = if stands {
             self.relative(state, i) + state.ring_velocity(i)

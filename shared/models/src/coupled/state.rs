@@ -72,6 +72,12 @@ pub struct RingEvent<R> {
     pub event: ModelEvent<R>,
 }
 
+/// Who is told of what happens, and at which part of a step it does.
+pub(super) struct Listener<'a, R> {
+    pub(super) part: R,
+    pub(super) on_event: &'a mut dyn FnMut(RingEvent<R>),
+}
+
 /// Permanent contact in a ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Held<R> {
@@ -89,7 +95,7 @@ impl<R: Real> Held<R> {
 }
 
 /// A ring's part of the state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Seat<R> {
     pub(super) held: Option<Held<R>>,
     pub(super) mount: SprungState<R>,
@@ -199,11 +205,11 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
     }
 
     pub(super) fn ring_place(&self, ring: usize) -> Vector<R> {
-        self.seats[ring].mount.place()
+        self.seats[ring].mount.place.value()
     }
 
     pub(super) fn ring_velocity(&self, ring: usize) -> Vector<R> {
-        self.seats[ring].mount.velocity()
+        self.seats[ring].mount.velocity.value()
     }
 
     pub(super) fn is_held(&self, ring: usize) -> bool {
@@ -218,7 +224,7 @@ impl<R: Precision, const N: usize, const Q: usize> CoupledState<R, N, Q> {
 
     /// Whether a hard stop holds the ring.
     pub(super) fn is_stopped(&self, ring: usize) -> bool {
-        self.seats[ring].mount.is_stopped()
+        self.seats[ring].mount.stopped
     }
 
     pub(super) fn worked(&mut self, more: u32) {
@@ -260,21 +266,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         if Q == 1 && tilts.as_flattened().iter().any(|x| *x != R::ZERO) {
             return Err(ConfigError::OutOfRange("start", "without tilt"));
         }
-        let seat = Seat {
-            held: None,
-            mount: SprungState::default(),
-            race: BallBearingState::default(),
-            load: Load::default(),
-            impulse: R::ZERO,
-            held_impulse: R::ZERO,
-        };
         let mut state = CoupledState {
             tick: 0,
             place: [Sums::default(); Q],
             velocity: [Sums::default(); Q],
             spin: Sum::new(spin),
             angle: Turns::default(),
-            seats: [seat; N],
+            seats: [Seat::default(); N],
             on: self.on_at(Instant::at_tick(0)),
             base: Turns::default(),
             books: Books::default(),
@@ -296,7 +294,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 return Err(ConfigError::OutOfRange("start", rule));
             }
         }
-        self.meet(&mut state, None, false, R::ZERO, &mut on_event);
+        let (part, on_event) = (R::ZERO, &mut on_event);
+        self.meet(&mut state, None, false, &mut Listener { part, on_event });
         Ok(state)
     }
 

@@ -4,10 +4,13 @@
 //! into them without giving it back. Where friction would gain energy it follows the normal impulses; where
 //! unlike restitutions would, there is none.
 
-use super::follow::{Arrival, on_wall};
-use super::links::{Grip, Link, Links};
+use core::array::from_fn;
+
+use super::beyond::{Arrival, on_wall};
+use super::links::{Grip, Link, Links, contact, stop};
+use super::state::{Held, Listener};
 use super::vector::{Mobility, Vector};
-use super::{Coupled, CoupledState, RingEvent};
+use super::{Coupled, CoupledState, Ring, at};
 use touchdown_rotor::kinematics::Change;
 use touchdown_rotor::precision::Precision;
 
@@ -41,15 +44,13 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         R::EPSILON.sqrt()
     }
 
-    /// The impact of all that touch, `part` of a step after the step's start; `arrived` is at its wall
-    /// whatever its place. With `stays` no ring is left again.
+    /// The impact of all that touch; `arrived` is at its wall whatever its place. With `stays` no ring is left again.
     pub(super) fn meet(
         &self,
         state: &mut CoupledState<R, N, Q>,
         arrived: Option<Arrival>,
         stays: bool,
-        part: R,
-        on_event: &mut impl FnMut(RingEvent<R>),
+        to: &mut Listener<R>,
     ) {
         // As near to its wall as the axis that arrived is by the step's error.
         let mut near = R::ONE;
@@ -57,8 +58,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             near = near.least(self.reach_at(state, i));
         }
         near -= Self::together();
-        let mut meetings: [Meeting<R>; N] =
-            core::array::from_fn(|i| self.meeting(state, i, arrived, near));
+        let mut meetings = from_fn(|i| self.meeting(state, i, arrived, near));
         for (i, meeting) in meetings.iter_mut().enumerate().filter(|(_, it)| it.new) {
             self.back(state, i, meeting);
         }
@@ -91,7 +91,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                     speed: meeting.outward,
                     impulse: meeting.impulse,
                 };
-                self.tell(state, i, part, change, on_event);
+                self.tell(state, i, change, to);
             }
             if meeting.stops
                 && let Some(mount) = &self.rings[i].mount
@@ -99,7 +99,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 mount.seat(&mut state.seats[i].mount);
             }
             if returns[i] {
-                state.seats[i].held = Some(super::state::Held {
+                state.seats[i].held = Some(Held {
                     rolling: meeting.stuck,
                     ..Default::default()
                 });
@@ -107,7 +107,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         }
         self.seat(state);
         for (i, _) in returns.iter().enumerate().filter(|(_, starts)| **starts) {
-            self.tell(state, i, part, Change::ContactStarts, on_event);
+            self.tell(state, i, Change::ContactStarts, to);
         }
     }
 
@@ -168,9 +168,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 mount.brace(&mut state.seats[i].mount);
             }
         }
-        let (links, places, stops) = self.links(state, meetings);
+        let links = self.links(state, meetings);
         let mut solved = links;
-        let most = R::lit(CLOSE) * R::EPSILON * self.size(&links, &places);
+        let most = R::lit(CLOSE) * R::EPSILON * self.size(&links);
         let smooth = !solved.solve() || solved.gained() > most;
         if smooth {
             state.jammed = state.jammed.or(Some(state.tick));
@@ -185,7 +185,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 }
             }
         }
-        self.take(state, meetings, &solved, [&places, &stops]);
+        self.take(state, meetings, &solved);
         for i in 0..N {
             if smooth && meetings[i].impulse > R::ZERO {
                 meetings[i].stuck = self.rub(state, i, meetings[i].impulse);
@@ -194,24 +194,17 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Size of the energy that the impact is about.
-    fn size(&self, links: &Links<R, N>, places: &[Option<usize>; N]) -> R {
-        let all = places.iter().flatten().filter_map(|it| links.get(*it));
+    fn size(&self, links: &Links<R, N>) -> R {
+        let all = (0..N).filter_map(|i| links.get(contact(i)));
         all.fold(R::ZERO, |sum, link| sum + link.free.square())
     }
 
     /// The walls that take part, with velocities in them.
-    #[allow(clippy::type_complexity)]
-    fn links(
-        &self,
-        state: &CoupledState<R, N, Q>,
-        meetings: &[Meeting<R>; N],
-    ) -> (Links<R, N>, [Option<usize>; N], [Option<usize>; N]) {
+    fn links(&self, state: &CoupledState<R, N, Q>, meetings: &[Meeting<R>; N]) -> Links<R, N> {
         let mut links = Links::new();
-        let (mut places, mut stops) = ([None; N], [None; N]);
         for (i, meeting) in meetings.iter().enumerate() {
             if meeting.touches {
-                let within = self.within(state, i);
-                let normal = within.times(R::ONE / within.length());
+                let normal = self.within(state, i).unit();
                 let mut link = Link::new(normal, self.relative(state, i));
                 let outward = normal.dot(link.free);
                 link.wanted = -(meeting.restitution * outward.most(R::ZERO));
@@ -223,38 +216,24 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 } else {
                     Link::sliding(link.friction, link.before)
                 };
-                places[i] = Some(links.add(link));
+                links.put(contact(i), link);
             }
             if meeting.stops || meeting.backed {
-                let place = state.ring_place(i);
-                let normal = place.times(R::ONE / place.length());
-                stops[i] = Some(links.add(Link::new(normal, state.ring_velocity(i))));
+                let normal = state.ring_place(i).unit();
+                links.put(stop(i), Link::new(normal, state.ring_velocity(i)));
             }
         }
-        for (i, ring) in self.rings.iter().enumerate() {
-            let yielding = ring.mount.map_or([R::ZERO; 2], |mount| mount.yielding());
-            let own = Mobility::along(yielding);
-            for (j, other) in self.rings.iter().enumerate() {
-                if let (Some(to), Some(from)) = (places[i], places[j]) {
-                    let mobility = Vector::real(self.mobility(i, j));
-                    let mut motion = Mobility::default() + mobility;
-                    let mut spin = ring.surface * other.surface / self.inertia_ratio;
-                    if i == j {
-                        motion = own + mobility;
-                        spin += ring.race.map_or(R::ZERO, |race| race.mobility());
-                    }
-                    links.respond(to, from, motion, spin);
-                }
-            }
-            if let Some(stop) = stops[i] {
-                links.respond(stop, stop, own, R::ZERO);
-                if let Some(contact) = places[i] {
-                    links.respond(stop, contact, own.back(), R::ZERO);
-                    links.respond(contact, stop, own.back(), R::ZERO);
-                }
-            }
-        }
-        (links, places, stops)
+        let moved = |i, j| Vector::real(self.mobility(i, j));
+        let own = |i: usize| {
+            let Ring { mount, race, .. } = &self.rings[i];
+            let yielding = mount.map_or([R::ZERO; 2], |it| it.yielding());
+            (
+                Mobility::along(yielding),
+                race.map_or(R::ZERO, |it| it.mobility()),
+            )
+        };
+        self.respond(&mut links, moved, own);
+        links
     }
 
     /// Gives the impulses, and books their work: impulse times mean velocity.
@@ -263,17 +242,14 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         state: &mut CoupledState<R, N, Q>,
         meetings: &mut [Meeting<R>; N],
         links: &Links<R, N>,
-        [places, stops]: [&[Option<usize>; N]; 2],
     ) {
         for (i, ring) in self.rings.iter().enumerate() {
-            let contact = places[i].and_then(|place| Some((place, links.get(place)?)));
-            let stop = stops[i].and_then(|place| links.get(place));
-            let by_stop = stop.map_or(Vector::default(), Link::push);
+            let by_stop = links.get(stop(i)).map_or(Vector::default(), Link::push);
             let mut push = Vector::default();
-            if let Some((place, link)) = contact {
+            if let Some(link) = links.get(contact(i)) {
                 push = link.push();
-                let mean = (link.free + links.motion(place)).times(R::HALF);
-                let surface = R::HALF * (link.surface + links.surface(place));
+                let mean = (link.free + links.motion(contact(i))).times(R::HALF);
+                let surface = R::HALF * (link.surface + links.surface(contact(i)));
                 let heat = -(link.rubbed * (link.normal.cross(mean) + surface));
                 state.books.heat.add(heat);
                 let lost = link.pressed * link.normal.dot(mean);
@@ -313,10 +289,9 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             if !meetings[i].new {
                 continue;
             }
-            let within = self.within(state, i);
-            let normal = within.times(R::ONE / within.length());
+            let normal = self.within(state, i).unit();
             let velocity = self.relative(state, i);
-            let moved = super::at(&ring.shape, &passage.moved) - passage.ring_moved(i);
+            let moved = at(&ring.shape, &passage.moved) - passage.ring_moved(i);
             let bent = moved - velocity.times(time);
             let round = normal.cross(moved);
             let into = R::TWO * normal.dot(bent) + round * round / ring.limit;

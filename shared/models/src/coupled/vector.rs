@@ -40,6 +40,11 @@ impl<R: Real> Vector<R> {
         self.square().sqrt()
     }
 
+    /// Of length 1 in its direction; it is not 0.
+    pub(super) fn unit(self) -> Self {
+        self.times(R::ONE / self.length())
+    }
+
     /// A quarter turn counter-clockwise: times i.
     pub(super) fn turned(self) -> Self {
         Self {
@@ -80,6 +85,12 @@ impl<R: Real> Vector<R> {
             x: self.dot(other) / square,
             y: other.cross(self) / square,
         }
+    }
+}
+
+impl Vector<f64> {
+    pub(super) fn rounded<R: Real>(self) -> Vector<R> {
+        Vector::new(self.parts().map(R::lit))
     }
 }
 

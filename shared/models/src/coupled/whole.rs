@@ -26,18 +26,17 @@ impl<R: Precision, const N: usize, const Q: usize> Stepper<R> for Whole<R, N, Q>
         spin: R,
         mut on_event: impl FnMut(ModelEvent<R>),
     ) -> Result<Self::State, ConfigError> {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.start(&self.start, spin, pointer(&mut sink))
+        let on_event = |it: RingEvent<R>| on_event(it.event);
+        self.model.start(&self.start, spin, on_event)
     }
 
     fn step(&self, state: &mut Self::State, mut on_event: impl FnMut(ModelEvent<R>)) {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.step(state, pointer(&mut sink));
+        self.model.step(state, |it| on_event(it.event));
     }
 
     fn part_step(&self, state: &mut Self::State, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        let mut sink = |it: RingEvent<R>| on_event(it.event);
-        self.model.part_step(state, part, pointer(&mut sink));
+        self.model
+            .part_step(state, part, &mut |it| on_event(it.event));
     }
 
     /// Of the centre of mass; turns are those of the ring that has most.
@@ -61,9 +60,4 @@ impl<R: Precision, const N: usize, const Q: usize> Stepper<R> for Whole<R, N, Q>
             turns,
         }
     }
-}
-
-/// The model's code is built once, whatever is done with its events.
-fn pointer<R>(on_event: &mut impl FnMut(RingEvent<R>)) -> &mut dyn FnMut(RingEvent<R>) {
-    on_event
 }

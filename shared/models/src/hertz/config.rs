@@ -1,6 +1,6 @@
 //! A rotor, its retainer and what they are made of.
 
-use super::shape::{Materials, Pairing, Shape};
+use super::shape::{Contact, Materials, Pairing};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
@@ -8,13 +8,13 @@ use touchdown_rotor::scales::positive;
 
 /// A rotor and its compliant retainer, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HertzConfig<R, C> {
+pub struct HertzConfig<R> {
     /// What it shares with the rigid rung.
     pub rigid: RigidConfig<R>,
     /// What rotor and retainer are made of.
     pub materials: Materials<R>,
-    /// [`super::Point`], [`super::Line`] or [`super::LinePower`].
-    pub shape: C,
+    /// How they touch.
+    pub contact: Contact,
     /// Speed of the fastest impact expected, m/s: it sets the longest step.
     pub fastest: R,
 }
@@ -22,7 +22,7 @@ pub struct HertzConfig<R, C> {
 /// How stiff the contact is, SI; without damping and without gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance<R> {
-    /// K in force = K d^n, N/m^n; in force = K d/(ln(4 K c/force) - 1), N/m, of [`super::Line`].
+    /// K in force = K d^n, N/m^n; in force = K d/(ln(4 K c/force) - 1), N/m, of a line.
     pub stiffness: R,
     /// Compression of the fastest impact, m.
     pub deepest: R,
@@ -46,7 +46,7 @@ impl<R: Real> Compliance<R> {
     }
 }
 
-impl<R: Real, C: Shape<R>> HertzConfig<R, C> {
+impl<R: Real> HertzConfig<R> {
     /// Checks what the contact's stiffness depends on, and works it out.
     pub fn compliance(&self) -> Result<Compliance<R>, ConfigError> {
         let (mass, speed) = (self.rigid.mass, self.fastest);
@@ -61,16 +61,17 @@ impl<R: Real, C: Shape<R>> HertzConfig<R, C> {
             mass,
             speed,
         };
-        let stiffness = self.shape.stiffness(&pairing)?;
-        let deepest = C::deepest(&pairing, stiffness);
-        let power = C::power(deepest, pairing.clearance);
+        let stiffness = self.contact.stiffness(&pairing)?;
+        let shape = self.contact.shape();
+        let deepest = shape.deepest(&pairing, stiffness);
+        let power = shape.power(deepest, pairing.clearance);
         let force = stiffness * power;
         let compliance = Compliance {
             stiffness,
             deepest,
             peak_force: force,
-            rate: (C::slope(deepest, power) * force / (deepest * mass)).sqrt(),
-            contact_time: C::duration(deepest, power) * deepest / speed,
+            rate: (shape.slope(deepest, power) * force / (deepest * mass)).sqrt(),
+            contact_time: shape.duration(deepest, power) * deepest / speed,
         };
         positive("fastest", compliance.contact_time)?;
         positive("fastest", compliance.rate)?;

@@ -1,8 +1,7 @@
 //! Where contacts begin and end, and what is told of them.
 
 use super::state::Touching;
-use super::{Hertz, HertzState, Scheme, Shape, tell};
-use touchdown_rotor::clock::Instant;
+use super::{Hertz, HertzState, tell};
 use touchdown_rotor::contact::{Grip, mode_of};
 use touchdown_rotor::kinematics::{Change, ModelEvent, Pulse};
 use touchdown_rotor::precision::Precision;
@@ -10,7 +9,7 @@ use touchdown_rotor::start::Start;
 use touchdown_rotor::sum::Sum;
 use touchdown_rotor::wall::{Mode, WallState};
 
-impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
+impl<R: Precision> Hertz<R> {
     /// The state at time 0. On the wall the rotor starts in the compression that its motion holds.
     pub(super) fn placed(
         &self,
@@ -19,12 +18,8 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         on_event: &mut impl FnMut(ModelEvent<R>),
     ) -> HertzState<R> {
         let mut state = HertzState {
-            now: Instant::default(),
-            position: [Sum::new(R::ZERO); 2],
-            velocity: [Sum::new(R::ZERO); 2],
             spin: Sum::new(spin),
-            touching: None,
-            exceeded: 0,
+            ..HertzState::default()
         };
         match *start {
             Start::Free { position, velocity } => {
@@ -38,7 +33,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
             } => {
                 let normal_acceleration = tangential * tangential + self.law.gravity * cos;
                 let held = normal_acceleration.most(R::ZERO) / self.stiffness;
-                let out = R::ONE + C::depth(held, R::ONE);
+                let out = R::ONE + self.shape.depth(held, R::ONE);
                 state.position = [out * sin, -(out * cos)].map(Sum::new);
                 state.velocity = [tangential * cos, tangential * sin].map(Sum::new);
                 let wall = WallState {

@@ -8,17 +8,14 @@ mod config;
 mod damping;
 mod follow;
 mod press;
-mod scheme;
 mod shape;
 mod state;
 
 pub use config::{Compliance, HertzConfig};
 pub(crate) use damping::damping;
-pub use scheme::{Euler, Scheme, Verlet};
-pub use shape::{Line, LinePower, Materials, Pairing, Point, Shape};
+pub use press::Scheme;
+pub use shape::{Contact, Materials, Shape};
 pub use state::HertzState;
-
-use core::marker::PhantomData;
 
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
@@ -34,10 +31,12 @@ use touchdown_rotor::stepper::Stepper;
 /// entry speed. Chosen, because such a contact has 1e-6 of that impact's energy.
 const SLOWEST: f64 = 1e-3;
 
-/// Coefficients of the model; `C` is the shape of the contact, `S` the scheme.
+/// Coefficients of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hertz<R, C, S> {
+pub struct Hertz<R> {
     law: Law<R>,
+    shape: Shape,
+    scheme: Scheme,
     /// K, dimensionless: force per mass in units of V^2/rho0 over depth in units of rho0.
     stiffness: R,
     /// a.
@@ -47,12 +46,11 @@ pub struct Hertz<R, C, S> {
     /// Length of a step, T.
     step: R,
     scales: Scales<R>,
-    kind: PhantomData<(C, S)>,
 }
 
-impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
+impl<R: Precision> Hertz<R> {
     /// Checks `config` and works out the coefficients. A step above 2/omega_c is refused.
-    pub fn try_new(config: &HertzConfig<R, C>) -> Result<Self, ConfigError> {
+    pub fn try_new(config: &HertzConfig<R>, scheme: Scheme) -> Result<Self, ConfigError> {
         let (law, scales) = config.rigid.scaled()?;
         let compliance = config.compliance()?;
         if config.rigid.step > compliance.longest_step() {
@@ -61,47 +59,48 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         }
         let deepest = compliance.deepest / scales.length;
         let fastest = config.fastest / scales.speed;
-        let power = C::power(deepest, R::ONE);
-        let parts = C::parts(deepest, power);
+        let shape = config.contact.shape();
+        let power = shape.power(deepest, R::ONE);
+        let parts = shape.parts(deepest, power);
         let stiffness = R::HALF * parts * fastest * fastest / (power * deepest);
         // A fall through the static compression: slower, gravity and not the impact decides.
-        let settled = C::depth(law.gravity / stiffness, R::ONE);
+        let settled = shape.depth(law.gravity / stiffness, R::ONE);
         let slowest = (R::TWO * law.gravity * settled).sqrt();
         Ok(Self {
             damping: damping::damping(law.restitution),
             law,
+            shape,
+            scheme,
             stiffness,
             slowest: slowest.most(R::lit(SLOWEST) * fastest),
             step: config.rigid.step / scales.time,
             scales,
-            kind: PhantomData,
         })
     }
-}
 
-impl<R: Real, C, S> Hertz<R, C, S> {
     /// The model's units.
     pub fn scales(&self) -> &Scales<R> {
         &self.scales
     }
 }
 
-impl<C, S> Hertz<f64, C, S> {
-    /// The same model with every coefficient rounded once; `D` is the shape in the other numbers.
-    pub fn rounded<R: Real, D>(&self) -> Hertz<R, D, S> {
+impl Hertz<f64> {
+    /// The same model with every coefficient rounded once.
+    pub fn rounded<R: Real>(&self) -> Hertz<R> {
         Hertz {
             law: self.law.rounded(),
+            shape: self.shape,
+            scheme: self.scheme,
             stiffness: R::lit(self.stiffness),
             damping: R::lit(self.damping),
             slowest: R::lit(self.slowest),
             step: R::lit(self.step),
             scales: self.scales.rounded(),
-            kind: PhantomData,
         }
     }
 }
 
-impl<R: Precision, C: Shape<R>, S: Scheme> Stepper<R> for Hertz<R, C, S> {
+impl<R: Precision> Stepper<R> for Hertz<R> {
     type State = HertzState<R>;
 
     fn start(
@@ -116,7 +115,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Stepper<R> for Hertz<R, C, S> {
 
     fn step(&self, state: &mut HertzState<R>, mut on_event: impl FnMut(ModelEvent<R>)) {
         let next = Instant::at_tick(state.now.tick + 1);
-        S::advance(self, state, self.step, next, &mut on_event);
+        self.advance(state, self.step, next, &mut on_event);
     }
 
     fn part_step(
@@ -127,7 +126,7 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Stepper<R> for Hertz<R, C, S> {
     ) {
         let tick = state.now.tick;
         let time = self.step * fraction;
-        S::advance(self, state, time, Instant { tick, fraction }, &mut on_event);
+        self.advance(state, time, Instant { tick, fraction }, &mut on_event);
     }
 
     fn kinematics(&self, state: &HertzState<R>) -> Kinematics<R> {

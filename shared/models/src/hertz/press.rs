@@ -1,26 +1,53 @@
-//! What acts in a step: gravity, and in contact the wall.
+//! A step, and what acts in it: gravity, and in contact the wall.
 
 use super::state::Touching;
-use super::{Hertz, HertzState, Scheme, Shape, tell};
+use super::{Hertz, HertzState, tell};
+use touchdown_rotor::clock::Instant;
 use touchdown_rotor::kinematics::{Change, ModelEvent};
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::sum::Sum;
 
-impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
-    /// Gravity alone, for `time`.
-    pub(super) fn fall(&self, state: &mut HertzState<R>, time: R) {
-        state.velocity[1].add(-(self.law.gravity * time));
-    }
+/// How a step goes: each is exact in the gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Semi-implicit: the velocity by the force here, then the place by the new velocity.
+    Euler,
+    /// Half the force, the place, half the force there. Twice the cost in contact.
+    Verlet,
+}
 
-    /// Gravity and the wall, for `time` at the place where the rotor is.
-    pub(super) fn press(
+impl<R: Precision> Hertz<R> {
+    /// Goes on by `time`, to `to`.
+    pub(super) fn advance(
         &self,
         state: &mut HertzState<R>,
         time: R,
+        to: Instant<R>,
         on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
+        let half = R::HALF * time;
+        let whole = self.scheme == Scheme::Euler && state.touching.is_some();
+        self.act(state, if whole { time } else { half }, on_event);
+        state.drift(time);
+        if self.scheme == Scheme::Euler && !whole {
+            self.fall(state, half);
+        }
+        state.now = to;
+        self.follow(state, on_event);
+        if self.scheme == Scheme::Verlet {
+            self.act(state, half, on_event);
+        }
+    }
+
+    /// Gravity alone, for `time`.
+    fn fall(&self, state: &mut HertzState<R>, time: R) {
+        state.velocity[1].add(-(self.law.gravity * time));
+    }
+
+    /// Gravity, and the wall where the rotor is in it, for `time` at its place.
+    fn act(&self, state: &mut HertzState<R>, time: R, on_event: &mut impl FnMut(ModelEvent<R>)) {
         let Some(mut touching) = state.touching else {
-            return;
+            return self.fall(state, time);
         };
         let law = &self.law;
         let [x, y] = state.position.map(Sum::value);
@@ -29,18 +56,18 @@ impl<R: Precision, C: Shape<R>, S: Scheme> Hertz<R, C, S> {
         let inverse = R::ONE / distance;
         let (sin, cos) = (x * inverse, -y * inverse);
         let depth = (distance - R::ONE).most(R::ZERO);
-        let power = C::power(depth, R::ONE);
+        let power = self.shape.power(depth, R::ONE);
         let force = self.stiffness * power;
 
         let fall = law.gravity * time;
         let (normal, along) = (u * sin - v * cos, u * cos + v * sin);
         let starts = !touching.stays && {
             // Motion and compression together do not suffice to leave against what presses.
-            let stored = force * depth / C::parts(depth, power);
+            let stored = force * depth / self.shape.parts(depth, power);
             let normal_acceleration = along * along + law.gravity * cos;
             R::HALF * normal * normal + stored < normal_acceleration * depth
         };
-        let steepness = C::slope(depth, power) * force;
+        let steepness = self.shape.slope(depth, power) * force;
         let inward = normal + fall * cos;
         let impulse = self.impulse(state, &touching, [depth, force, steepness], inward, time);
         let tangential = along - fall * sin;

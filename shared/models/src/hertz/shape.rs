@@ -55,145 +55,108 @@ impl<R: Real> Materials<R> {
 }
 
 /// What the stiffness follows from, SI.
-#[derive(Clone, Copy, Debug)]
-pub struct Pairing<R> {
+pub(super) struct Pairing<R> {
     /// E*, Pa.
-    pub modulus: R,
+    pub(super) modulus: R,
     /// Of the rotor, m.
-    pub radius: R,
+    pub(super) radius: R,
     /// Radial clearance, m.
-    pub clearance: R,
+    pub(super) clearance: R,
     /// kg.
-    pub mass: R,
+    pub(super) mass: R,
     /// Of the fastest impact expected, m/s.
-    pub speed: R,
+    pub(super) speed: R,
 }
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for super::Point {}
-    impl<R> Sealed for super::Line<R> {}
-    impl<R> Sealed for super::LinePower<R> {}
+/// How rotor and retainer touch.
+#[derive(Clone, Copy, Debug, PartialEq, strum::Display)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Contact {
+    /// A crowned rotor in a crowned ring, as sphere in sphere: Hertz' point contact.
+    Point,
+    /// A cylinder in a cylindrical ring.
+    Line {
+        /// Axial, m.
+        length: f64,
+    },
+    /// The same as a spring: its secant at the peak force of the fastest impact.
+    LinePower {
+        /// Axial, m.
+        length: f64,
+    },
 }
 
-/// A shape of contact: force over depth is K times a function of the depth, d^n where nothing else is said. `gap` is the
-/// clearance in the unit of the depth.
-pub trait Shape<R: Real>: sealed::Sealed + Copy {
-    /// 2 n: twice the exponent of the force.
-    const TWICE_EXPONENT: i32;
-    /// Duration of a contact without damping, in units of deepest compression over entry speed.
-    const DURATION: f64;
+impl Contact {
+    /// How its force grows.
+    pub const fn shape(self) -> Shape {
+        match self {
+            Self::Point => Shape::Point,
+            Self::Line { .. } => Shape::Line,
+            Self::LinePower { .. } => Shape::Spring,
+        }
+    }
 
-    /// K, N/m^n.
-    fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError>;
+    /// K, N/m^n. 4/3 E* sqrt(R_eff) of a point, with R_eff = r R/(R - r) and R - r the clearance.
+    pub(super) fn stiffness<R: Real>(self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
+        let plane = |length| plane(R::lit(length), pairing);
+        match self {
+            Self::Point => {
+                let outer = pairing.radius + pairing.clearance;
+                let curvature = pairing.radius / pairing.clearance * outer;
+                Ok(R::lit(4.0 / 3.0) * pairing.modulus * curvature.sqrt())
+            }
+            Self::Line { length } => {
+                let plane = plane(length)?;
+                logarithm(peak(pairing, plane)?, pairing.clearance)?;
+                Ok(plane)
+            }
+            Self::LinePower { length } => {
+                let plane = plane(length)?;
+                let mut secant = R::ONE;
+                for _ in 0..ITERATIONS {
+                    let peak = pairing.speed * (pairing.mass / (plane * secant)).sqrt();
+                    secant = logarithm(peak, pairing.clearance)? - R::ONE;
+                }
+                Ok(plane / secant)
+            }
+        }
+    }
+}
+
+/// How the force grows with the depth: K times a function of it, d^n where nothing else is said. `gap` is the clearance in the
+/// unit of the depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// n = 3/2.
+    Point,
+    /// d = F/K (l(F) - 1) with l = ln(4 K c/F), c the clearance and K = pi E* L (Johnson, Contact Mechanics, 1985, chapter 5;
+    /// as quoted by Pereira, Ramalho, Ambrosio, Nonlinear Dynamics 63, 2011). It holds as long as the approach grows with the
+    /// force: up to l = 2.
+    Line,
+    /// In proportion to it.
+    Spring,
+}
+
+impl Shape {
+    /// 2 n: twice the exponent of the force; of a line where l does not change.
+    const fn twice_exponent(self) -> i32 {
+        match self {
+            Self::Point => 3,
+            Self::Line | Self::Spring => 2,
+        }
+    }
 
     /// Force over K.
-    fn power(depth: R, gap: R) -> R;
-
-    /// Slope of the force, in parts of force over depth.
-    fn slope(_depth: R, _power: R) -> R {
-        R::HALF * R::from_i32(Self::TWICE_EXPONENT)
-    }
-
-    /// Force times depth over the energy that is stored.
-    fn parts(_depth: R, _power: R) -> R {
-        R::HALF * R::from_i32(Self::TWICE_EXPONENT) + R::ONE
-    }
-
-    /// The depth at this force over K; not for the step.
-    fn depth(power: R, _gap: R) -> R {
-        let root = root(power, Self::TWICE_EXPONENT);
-        root * root
-    }
-
-    /// The depth at which the pairing's impact has come to rest; not for the step.
-    fn deepest(pairing: &Pairing<R>, stiffness: R) -> R {
-        let &Pairing { mass, speed, .. } = pairing;
-        let parts = Self::parts(R::ZERO, R::ZERO);
-        let energy = R::HALF * parts * mass / stiffness * speed * speed;
-        let root = root(energy, Self::TWICE_EXPONENT + 2);
-        root * root
-    }
-
-    /// [`Self::DURATION`] of an impact that comes to rest there.
-    fn duration(_deepest: R, _power: R) -> R {
-        R::lit(Self::DURATION)
-    }
-}
-
-/// A crowned rotor in a crowned ring, as sphere in sphere: Hertz' point contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point;
-
-/// A cylinder in a cylindrical ring: d = F/K (l(F) - 1) with l = ln(4 K c/F), c the clearance and K = pi E* L (Johnson,
-/// Contact Mechanics, 1985, chapter 5; as quoted by Pereira, Ramalho, Ambrosio, Nonlinear Dynamics 63, 2011). It holds as
-/// long as the approach grows with the force: up to l = 2.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line<R> {
-    /// Axial length of the contact, m.
-    pub length: R,
-}
-
-/// The same as a spring: its secant at the peak force of the fastest impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinePower<R> {
-    /// Axial length of the contact, m.
-    pub length: R,
-}
-
-impl<R: Real> Shape<R> for Point {
-    const TWICE_EXPONENT: i32 = 3;
-    /// 2 times the integral of dx/sqrt(1 - x^2.5) from 0 to 1.
-    const DURATION: f64 = 2.943_275_278_886_26;
-
-    /// 4/3 E* sqrt(R_eff), with R_eff = r R/(R - r) and R - r the clearance.
-    fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-        let outer = pairing.radius + pairing.clearance;
-        let curvature = pairing.radius / pairing.clearance * outer;
-        Ok(R::lit(4.0 / 3.0) * pairing.modulus * curvature.sqrt())
-    }
-
-    fn power(depth: R, _gap: R) -> R {
-        depth * depth.sqrt()
-    }
-}
-
-impl<R: Real> Shape<R> for LinePower<R> {
-    const TWICE_EXPONENT: i32 = 2;
-    const DURATION: f64 = core::f64::consts::PI;
-
-    fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-        let plane = plane(self.length, pairing)?;
-        let mut secant = R::ONE;
-        for _ in 0..ITERATIONS {
-            let peak = pairing.speed * (pairing.mass / (plane * secant)).sqrt();
-            secant = logarithm(peak, pairing.clearance)? - R::ONE;
-        }
-        Ok(plane / secant)
-    }
-
-    fn power(depth: R, _gap: R) -> R {
-        depth
-    }
-}
-
-impl<R: Real> Shape<R> for Line<R> {
-    /// Where l does not change.
-    const TWICE_EXPONENT: i32 = 2;
-    const DURATION: f64 = core::f64::consts::PI;
-
-    fn stiffness(&self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-        let plane = plane(self.length, pairing)?;
-        logarithm(peak(pairing, plane)?, pairing.clearance)?;
-        Ok(plane)
-    }
-
-    /// d/(l - 1), where l - 1 = x follows from x - ln x = b, b = ln(4 c/d) - 1, by Newton's method from a lower bound by Lambert's
-    /// function, 1 + sqrt(2 u) + 2 u/3 with u = b - 1 (Chatzigeorgiou, IEEE Communications Letters 17, 2013). Deeper than the
-    /// law goes it is d.
-    fn power(depth: R, gap: R) -> R {
-        if depth <= R::ZERO {
-            return R::ZERO;
+    ///
+    /// Of a line d/(l - 1), where l - 1 = x follows from x - ln x = b, b = ln(4 c/d) - 1, by Newton's method from a lower bound
+    /// by Lambert's function, 1 + sqrt(2 u) + 2 u/3 with u = b - 1 (Chatzigeorgiou, IEEE Communications Letters 17, 2013).
+    /// Deeper than the law goes it is d.
+    pub fn power<R: Real>(self, depth: R, gap: R) -> R {
+        match self {
+            Self::Point => return depth * depth.sqrt(),
+            Self::Spring => return depth,
+            Self::Line if depth <= R::ZERO => return R::ZERO,
+            Self::Line => {}
         }
         let bound = (R::lit(4.0) * gap / depth).ln() - R::ONE;
         let beyond = bound - R::ONE;
@@ -209,42 +172,74 @@ impl<R: Real> Shape<R> for Line<R> {
         depth / x
     }
 
-    fn slope(depth: R, power: R) -> R {
-        R::ONE / (R::ONE - share(depth, power))
-    }
-
-    fn parts(depth: R, power: R) -> R {
-        R::lit(4.0) / (R::TWO - share(depth, power))
-    }
-
-    fn depth(power: R, gap: R) -> R {
-        if power <= R::ZERO {
-            return R::ZERO;
+    /// Slope of the force, in parts of force over depth.
+    pub(crate) fn slope<R: Real>(self, depth: R, power: R) -> R {
+        match self {
+            Self::Point => R::lit(1.5),
+            Self::Line => R::ONE / (R::ONE - share(depth, power)),
+            Self::Spring => R::ONE,
         }
-        power * ((R::lit(4.0) * gap / power).ln().most(R::TWO) - R::ONE)
     }
 
-    fn deepest(pairing: &Pairing<R>, stiffness: R) -> R {
-        // `stiffness` has refused what has no peak.
-        let peak = peak(pairing, stiffness).unwrap_or(R::ZERO);
-        Self::depth(peak, pairing.clearance)
-    }
-
-    /// 2 times the integral of dd/v over the deepest, with F = F0 sin t and t = pi/2 s^2: smooth at both ends.
-    fn duration(deepest: R, power: R) -> R {
-        const POINTS: i32 = 256;
-        let most = deepest / power;
-        let mut sum = R::ZERO;
-        for k in 0..POINTS {
-            let s = (R::from_i32(k) + R::HALF) / R::from_i32(POINTS);
-            let quarter = R::lit(core::f64::consts::FRAC_PI_2);
-            let (sine, cosine) = (quarter * s * s).sin_cos();
-            let x = most - sine.ln();
-            let left = R::ONE - sine * sine * (x - R::HALF) / (most - R::HALF);
-            sum += s * (x - R::ONE) * cosine / left.sqrt();
+    /// Force times depth over the energy that is stored.
+    pub(crate) fn parts<R: Real>(self, depth: R, power: R) -> R {
+        match self {
+            Self::Point => R::lit(2.5),
+            Self::Line => R::lit(4.0) / (R::TWO - share(depth, power)),
+            Self::Spring => R::TWO,
         }
-        R::lit(2.0 * core::f64::consts::PI) * sum / (R::from_i32(POINTS) * most)
     }
+
+    /// The depth at this force over K; not for the step.
+    pub fn depth<R: Real>(self, power: R, gap: R) -> R {
+        match self {
+            Self::Line if power <= R::ZERO => R::ZERO,
+            Self::Line => power * ((R::lit(4.0) * gap / power).ln().most(R::TWO) - R::ONE),
+            _ => {
+                let root = root(power, self.twice_exponent());
+                root * root
+            }
+        }
+    }
+
+    /// The depth at which the pairing's impact has come to rest; not for the step.
+    pub(super) fn deepest<R: Real>(self, pairing: &Pairing<R>, stiffness: R) -> R {
+        if self == Self::Line {
+            // `stiffness` has refused what has no peak.
+            let peak = peak(pairing, stiffness).unwrap_or(R::ZERO);
+            return self.depth(peak, pairing.clearance);
+        }
+        let &Pairing { mass, speed, .. } = pairing;
+        let parts = self.parts(R::ZERO, R::ZERO);
+        let energy = R::HALF * parts * mass / stiffness * speed * speed;
+        let root = root(energy, self.twice_exponent() + 2);
+        root * root
+    }
+
+    /// Duration of a contact without damping that comes to rest there, in units of deepest compression over entry speed.
+    pub(super) fn duration<R: Real>(self, deepest: R, power: R) -> R {
+        match self {
+            // 2 times the integral of dx/sqrt(1 - x^2.5) from 0 to 1.
+            Self::Point => R::lit(2.943_275_278_886_26),
+            Self::Line => duration_of_line(deepest / power),
+            Self::Spring => R::lit(core::f64::consts::PI),
+        }
+    }
+}
+
+/// 2 times the integral of dd/v over the deepest, with F = F0 sin t and t = pi/2 s^2: smooth at both ends; `most` is l - 1 there.
+fn duration_of_line<R: Real>(most: R) -> R {
+    const POINTS: i32 = 256;
+    let mut sum = R::ZERO;
+    for k in 0..POINTS {
+        let s = (R::from_i32(k) + R::HALF) / R::from_i32(POINTS);
+        let quarter = R::lit(core::f64::consts::FRAC_PI_2);
+        let (sine, cosine) = (quarter * s * s).sin_cos();
+        let x = most - sine.ln();
+        let left = R::ONE - sine * sine * (x - R::HALF) / (most - R::HALF);
+        sum += s * (x - R::ONE) * cosine / left.sqrt();
+    }
+    R::lit(2.0 * core::f64::consts::PI) * sum / (R::from_i32(POINTS) * most)
 }
 
 /// pi E* L, N/m.

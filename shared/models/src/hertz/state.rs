@@ -7,7 +7,7 @@ use touchdown_rotor::sum::Sum;
 use touchdown_rotor::turns::Turns;
 
 /// A contact, from its first to its last moment beyond the wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Touching<R> {
     pub(super) since: Instant<R>,
     /// Damping constant over the speed that scales it, 1/V.
@@ -25,7 +25,7 @@ pub(super) struct Touching<R> {
 }
 
 /// The rotor's state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HertzState<R> {
     pub(super) now: Instant<R>,
     pub(super) position: [Sum<R>; 2],
@@ -41,12 +41,7 @@ impl<R: Real> Touching<R> {
         Self {
             since,
             rate,
-            peak: R::ZERO,
-            impulse: R::ZERO,
-            stays: false,
-            rolling: false,
-            gripped: false,
-            turns: Turns::default(),
+            ..Self::default()
         }
     }
 }

@@ -74,18 +74,6 @@ impl<R: Precision> Moreau<R> {
         &self.scales
     }
 
-    fn go(&self, state: &mut MoreauState<R>, part: R, mut on_event: impl FnMut(ModelEvent<R>)) {
-        let stretch = Stretch {
-            time: self.step * part,
-            from: R::ZERO,
-            part,
-        };
-        match state.motion {
-            Motion::Flight(flight) => self.fly(state, flight, stretch, &mut on_event),
-            Motion::Wall(wall) => self.slide(state, wall, stretch, &mut on_event),
-        }
-    }
-
     /// Tells of `change`, `part` of a step after the step's start.
     fn tell(
         &self,
@@ -131,7 +119,7 @@ impl<R: Precision> Stepper<R> for Moreau<R> {
     }
 
     fn step(&self, state: &mut MoreauState<R>, on_event: impl FnMut(ModelEvent<R>)) {
-        self.go(state, R::ONE, on_event);
+        self.part_step(state, R::ONE, on_event);
         state.tick += 1;
     }
 
@@ -139,9 +127,17 @@ impl<R: Precision> Stepper<R> for Moreau<R> {
         &self,
         state: &mut MoreauState<R>,
         fraction: R,
-        on_event: impl FnMut(ModelEvent<R>),
+        mut on_event: impl FnMut(ModelEvent<R>),
     ) {
-        self.go(state, fraction, on_event);
+        let stretch = Stretch {
+            time: self.step * fraction,
+            from: R::ZERO,
+            part: fraction,
+        };
+        match state.motion {
+            Motion::Flight(flight) => self.fly(state, flight, stretch, &mut on_event),
+            Motion::Wall(wall) => self.slide(state, wall, stretch, &mut on_event),
+        }
     }
 
     fn kinematics(&self, state: &MoreauState<R>) -> Kinematics<R> {
