@@ -7,6 +7,8 @@
 use core::fmt;
 
 use serde::Serialize;
+use touchdown_models::HertzConfig;
+use touchdown_rotor::error::ConfigError;
 
 /// Band over mode up to which the mode keeps less than a tenth of its static deflection.
 const STIFF: f64 = 0.1;
@@ -37,20 +39,34 @@ pub struct Validity {
 }
 
 impl Validity {
-    /// Of a pulse's band and a mode, Hz.
-    pub(super) fn new(band_hz: f64, mode_hz: f64) -> Self {
+    /// In the fastest impact of `contact` at the axial place `zeta` (in radii of gyration from the centre of
+    /// mass), where an impact meets 1/(1 + zeta^2) of the mass.
+    pub fn try_new(
+        contact: &HertzConfig<f64>,
+        zeta: f64,
+        mode_hz: f64,
+    ) -> Result<Self, ConfigError> {
+        if !(mode_hz > 0.0 && mode_hz.is_finite()) {
+            return Err(ConfigError::NotPositive("mode_hz"));
+        }
+        if !zeta.is_finite() {
+            return Err(ConfigError::NotFinite("zeta"));
+        }
+        let mut there = *contact;
+        there.rigid.mass = contact.rigid.mass / (1.0 + zeta * zeta);
+        let band_hz = 1.0 / there.compliance()?.contact_time;
         let ratio = band_hz / mode_hz;
         let verdict = match ratio {
             _ if ratio <= STIFF => Verdict::Rigid,
             _ if ratio <= 1.0 => Verdict::Rings,
             _ => Verdict::Bends,
         };
-        Self {
+        Ok(Self {
             band_hz,
             mode_hz,
             ratio,
             verdict,
-        }
+        })
     }
 }
 

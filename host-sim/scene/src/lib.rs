@@ -30,7 +30,7 @@ pub use materials::{CompliantWall, Contact, Materials};
 pub use mode::{MODES, Mode};
 pub use model::{Fidelity, LeftOut, Math, Model, Precision, Removable, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
-pub use support::{BallBearing, Stop, Support, axes};
+pub use support::{BallBearing, Stop, Support};
 pub use two_plane::{RINGS, Ring, TwoPlane};
 
 use std::borrow::Cow;

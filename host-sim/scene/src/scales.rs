@@ -27,13 +27,7 @@ pub fn validity(scene: &Scene) -> Option<Validity> {
     let mode = machine.elastic_mode?;
     let gyration = (machine.transverse_inertia / scene.rotor.mass).sqrt();
     let rings = machine.rings.iter().map(|ring| ring.place / gyration);
-    // An impact there meets 1/(1 + zeta^2) of the mass.
-    let all = rings.filter_map(|zeta| {
-        let mut there = compliant(scene);
-        there.rigid.mass /= 1.0 + zeta * zeta;
-        let compliance = there.compliance().ok()?;
-        Some(Validity::new(1.0 / compliance.contact_time, mode))
-    });
+    let all = rings.filter_map(|zeta| Validity::try_new(&compliant(scene), zeta, mode).ok());
     all.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
 }
 

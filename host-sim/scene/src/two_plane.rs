@@ -1,7 +1,6 @@
 //! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
-use touchdown_models::RaceConfig;
 
 use super::base::Base;
 use super::diagnostic::Diagnostic;

@@ -5,7 +5,7 @@ use rand_distr::{Distribution as _, Normal};
 use serde::Deserialize;
 use toml::{Spanned, Value};
 
-use touchdown_scene::list;
+use touchdown_scene::rule::exactly_if_there;
 
 /// As it is written in the plan.
 #[derive(Deserialize)]
@@ -18,11 +18,11 @@ pub(super) struct ParameterTable {
     steps: Option<u32>,
     #[serde(default)]
     log: bool,
-    #[serde(default, deserialize_with = "list::exactly_if_there")]
+    #[serde(default, deserialize_with = "exactly_if_there")]
     uniform: Option<[f64; 2]>,
-    #[serde(default, deserialize_with = "list::exactly_if_there")]
+    #[serde(default, deserialize_with = "exactly_if_there")]
     log_uniform: Option<[f64; 2]>,
-    #[serde(default, deserialize_with = "list::exactly_if_there")]
+    #[serde(default, deserialize_with = "exactly_if_there")]
     normal: Option<[f64; 2]>,
 }
 

@@ -104,7 +104,7 @@ impl Compared {
             return;
         }
         let walls = || scene.rings().iter().filter_map(|it| it.wall);
-        let pressed = [walls().next().is_some(), walls().any(|it| it.balls.is_some())];
+        let pressed = [walls().next().is_some(), walls().any(|it| it.law.balls.is_some())];
         let fine = model::run(&scene).expect("a valid scene").histories.whole;
         scene.model.step = 2.0 * STEP;
         let coarse = model::run(&scene).expect("a valid scene").histories.whole;

@@ -78,7 +78,7 @@ fn a_ring_swings_in_its_stop_and_leaves_as_fast_as_it_entered() {
     let mount = Support { vertical: Some([5e6, 0.0]), ..MOUNT };
     let none = Support { stiffness: 0.0, ..MOUNT };
     for (mount, axis, sign) in [(mount, 0, 1.0), (mount, 1, -1.0), (none, 0, -1.0)] {
-        let stiffness = touchdown_scene::axes(&mount)[axis][0];
+        let stiffness = mount.axes()[axis][0];
         let slow = (stiffness / mount.mass).sqrt();
         let before = |time: f64| match slow {
             0.0 => [SPEED * time, SPEED],

@@ -1,7 +1,7 @@
 //! Each extreme scene on rung `hertz`, in both schemes: steps that it refuses, and what holds at those
 //! that it takes. It is watched step by step: the energy that it has, and how deep it is in the wall.
 
-use touchdown_models::{Compliance, Line, Shape};
+use touchdown_models::{Compliance, Shape};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{Change, Kinematics, Precision as Number, Stepper, Touch};
 
@@ -132,7 +132,7 @@ impl Use for Press<'_> {
         let stiffness = self.stiff.stiffness * scales.length.powf(n + 1.0) / weight;
         let stored = |depth: f64| {
             if by_logarithm {
-                let power = Line::power(depth, 1.0);
+                let power = Shape::Line.power(depth, 1.0);
                 return 0.5 * stiffness * power * (depth.max(0.0) - 0.5 * power);
             }
             stiffness * depth.max(0.0).powf(n + 1.0) / (n + 1.0)

@@ -15,7 +15,7 @@ use super::soft::Soft;
 use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, Mode, System};
 use touchdown_base::machine::Machine;
-use touchdown_scene::{Base, Magnet, Stop, Support, axes};
+use touchdown_scene::{Base, Magnet, Stop, Support};
 
 /// Distance from its stop, in clearances or travels, at which a ring that the rotor strikes is on it.
 const AT_STOP: f64 = 1e-3;
@@ -258,7 +258,7 @@ impl CoupledMachine {
             ..Body::default()
         }));
         bodies.extend(self.retainers.iter().map(|it| {
-            let axes = it.mount.map_or([[0.0; 2]; 2], |mount| axes(&mount));
+            let axes = it.mount.map_or([[0.0; 2]; 2], |mount| mount.axes());
             Body {
                 stiffness: axes.map(|[stiffness, _]| stiffness),
                 damping: axes.map(|[_, damping]| damping),
