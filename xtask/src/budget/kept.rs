@@ -27,12 +27,6 @@ pub fn save(budget: &Budget, file: &Path) -> anyhow::Result<()> {
     fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))
 }
 
-/// Keeps `budget`.
-pub fn write(budget: &Budget) -> anyhow::Result<()> {
-    println!("  kept in {FILE}; `cargo xtask figures` writes the documents");
-    save(budget, &workspace().join(FILE))
-}
-
 /// What differs between the figures kept and those measured now; nothing between compilers, as each has its own.
 pub fn differences(kept: &Budget, now: &Budget) -> anyhow::Result<Vec<String>> {
     if kept.compiler != now.compiler {
@@ -54,11 +48,9 @@ pub fn differences(kept: &Budget, now: &Budget) -> anyhow::Result<Vec<String>> {
 
 /// Fails where there are `differences`.
 pub fn require(differences: &[String]) -> anyhow::Result<()> {
-    ensure!(
-        differences.is_empty(),
-        "{FILE} is out of date; `cargo xtask budget --keep` and `cargo xtask figures` write anew:\n  {}",
-        differences.join("\n  ")
-    );
+    let how = "`cargo xtask budget --keep` and `cargo xtask figures` write anew";
+    let lines = differences.join("\n  ");
+    ensure!(lines.is_empty(), "{FILE} is out of date; {how}:\n  {lines}");
     Ok(())
 }
 

@@ -19,6 +19,7 @@ use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
 use crate::firmware::{self, STACK_SIZES};
+use crate::workspace;
 
 use self::cycles::Modelled;
 pub use self::kept::FILE as MEASURED;
@@ -118,7 +119,8 @@ pub fn run(json: Option<&Path>, keep: bool) -> anyhow::Result<()> {
         kept::save(&budget, file)?;
     }
     if keep {
-        kept::write(&budget)?;
+        println!("  kept in {MEASURED}; `cargo xtask figures` writes the documents");
+        kept::save(&budget, &workspace().join(MEASURED))?;
     }
     let limits = judge::limits()?;
     print!("{}", judge::table(&budget, &limits));
