@@ -8,7 +8,7 @@ use super::magnets::Magnet;
 use super::mount::{MountConfig, Sprung};
 use super::race::{BallBearing, RaceConfig};
 use super::vector::Vector;
-use super::{Base, Coupled, Ring, Units, product, shape_of};
+use super::{Base, Coupled, MAGNETS, Ring, Units, product, shape_of};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
@@ -18,8 +18,6 @@ use touchdown_rotor::scales::{Scales, not_negative, positive};
 
 /// Most rings.
 const MOST_RINGS: usize = 4;
-/// Most magnetic bearings: two planes of them, as they are left and as they come back.
-pub(super) const MAGNETS: usize = 4;
 /// Most bending modes.
 pub(super) const MODES: usize = 3;
 /// (h/2)^2 times the stiffness that pulls away, over mass; at 1 the step has no solution.

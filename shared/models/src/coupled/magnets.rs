@@ -5,10 +5,9 @@
 //! of the stretch, found by repetition: each gains the square of the angle by which the magnet's oscillation turns in half
 //! the stretch.
 
-use super::config::MAGNETS;
 use super::passage::Passage;
 use super::vector::Vector;
-use super::{Coupled, CoupledState, at};
+use super::{Coupled, CoupledState, MAGNETS, at};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;

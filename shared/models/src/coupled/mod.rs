@@ -41,7 +41,7 @@ pub use state::{CoupledState, Load, Placement, RingEvent, RingMotion};
 pub use whole::Whole;
 
 use compliant::Compliant;
-use config::{MAGNETS, MODES};
+use config::MODES;
 use magnets::Magnet;
 use mount::Sprung;
 use race::BallBearing;
@@ -49,6 +49,9 @@ use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::Scales;
 use vector::Vector;
+
+/// Most magnetic bearings: two planes of them, as they are left and as they come back.
+const MAGNETS: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ring<R, const Q: usize> {

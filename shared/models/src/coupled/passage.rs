@@ -7,12 +7,11 @@
 use core::array::from_fn;
 
 use super::compliant::Compliant;
-use super::config::MAGNETS;
 use super::links::{Grip, Link, Links, contact, stop};
 use super::mount::{Ride, Rub, Sprung};
 use super::race::{Drag, Turning};
 use super::vector::{Mobility, Vector, inverse, turned_by};
-use super::{Coupled, CoupledState, at, product};
+use super::{Coupled, CoupledState, MAGNETS, at, product};
 use touchdown_rotor::precision::Precision;
 
 /// Values of the drags: against the turning, none, against the new turning.

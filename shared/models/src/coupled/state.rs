@@ -1,11 +1,10 @@
 //! The state: the rotor's coordinates, its spin, and each ring's motion.
 
 use super::compliant::SoftContact;
-use super::config::MAGNETS;
 use super::mount::SprungState;
 use super::race::{BallBearingState, RaceMotion};
 use super::vector::{Sums, Vector};
-use super::{Coupled, at};
+use super::{Coupled, MAGNETS, at};
 use touchdown_rotor::clock::Instant;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::kinematics::{Kinematics, ModelEvent, Touch};
