@@ -9,6 +9,7 @@ pub mod ad7606;
 pub mod app;
 mod blind_timer;
 pub mod board;
+pub mod cost;
 pub mod crash;
 pub mod drop_log;
 pub mod intake;

@@ -12,6 +12,7 @@ use touchdown_firmware::app::App;
 use touchdown_firmware::board::{
     Abilities, Board, SAMPLE_RATE_HZ, default_config, default_settings,
 };
+use touchdown_firmware::cost;
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::memory;
 use touchdown_firmware::memory_scrub::MemoryScrub;
@@ -532,6 +533,7 @@ fn without_a_configuration_of_its_own_there_is_never_current() {
 fn a_configuration_has_to_fit_the_board() {
     let board = Abilities {
         sample_rate: SAMPLE_RATE_HZ as f32,
+        cycles: 8_400.0,
         full_scale: 4_095,
         tachometers: false,
     };
@@ -543,6 +545,21 @@ fn a_configuration_has_to_fit_the_board() {
     let mut other = fits;
     other.sensing.full_scale = 65_535;
     assert_eq!(board.misfit(&other), Some("full_scale"));
+    for (instants, misfit) in [(16, None), (17, Some("release_instants"))] {
+        let mut other = fits;
+        other.detector.tuning.release_instants = instants;
+        assert_eq!(board.misfit(&other), misfit, "{instants}");
+    }
+}
+
+/// By as much as where the code lies in flash moves it.
+#[test]
+fn the_default_settings_cost_what_the_budget_measured() {
+    let measured = include_str!("../measured.json");
+    let measured: serde_json::Value = serde_json::from_str(measured).unwrap();
+    let typical = measured["cycles"]["typical"]["modelled"].as_f64().unwrap();
+    let cost = f64::from(cost::floating(&default_config().detector));
+    assert!((cost / typical - 1.0).abs() < 0.02, "{cost}, not {typical}");
 }
 
 #[test]

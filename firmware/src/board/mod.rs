@@ -17,6 +17,8 @@ use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::Shown;
 
+use crate::cost;
+
 /// A board, as a tick sees it. No call may block.
 pub trait Board {
     /// Passes a notice on, where the board has who wants it.
@@ -37,6 +39,8 @@ pub trait Board {
 pub struct Abilities {
     /// Hz.
     pub sample_rate: f32,
+    /// Of the core in a sample period; any number where samples wait for it.
+    pub cycles: f32,
     /// Highest count.
     pub full_scale: u16,
     /// Whether it takes the pulses of ring and cage.
@@ -52,6 +56,8 @@ impl Abilities {
             Some("full_scale")
         } else if config.tachometers.is_some() && !self.tachometers {
             Some("marks")
+        } else if cost::floating(&config.detector) > self.cycles {
+            Some("release_instants")
         } else {
             None
         }

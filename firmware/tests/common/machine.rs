@@ -195,6 +195,7 @@ impl Platform for Machine {
     fn abilities(&self) -> Abilities {
         Abilities {
             sample_rate: 20_000.0,
+            cycles: 8_400.0,
             full_scale: 4_095,
             tachometers: false,
         }

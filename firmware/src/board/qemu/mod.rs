@@ -176,6 +176,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     // Those of a board that gives the samples of this configuration.
     let abilities = Abilities {
         sample_rate: head.config.detector.sample_rate,
+        cycles: f32::INFINITY,
         full_scale: head.config.sensing.full_scale,
         tachometers: head.config.tachometers.is_some(),
     };

@@ -78,6 +78,7 @@ pub trait Chip: ConfigFlash + Sized + 'static {
     /// What a configuration has to fit. No pin takes the pulses of ring and cage.
     const ABILITIES: Abilities = Abilities {
         sample_rate: SAMPLE_RATE_HZ as f32,
+        cycles: (Self::MHZ * 1_000_000 / SAMPLE_RATE_HZ) as f32,
         full_scale: Self::FULL_SCALE,
         tachometers: false,
     };

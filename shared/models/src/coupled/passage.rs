@@ -89,7 +89,36 @@ impl<R: Precision, const N: usize, const Q: usize> Passage<R, N, Q> {
 impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The next `time`.
     pub(super) fn pass(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
-        let mut passage = self.free(state, time);
+        let shaken = self.shaken(state, time);
+        let ride = |i: usize| {
+            let (mount, state) = (self.rings[i].mount.as_ref(), &state.seats[i].mount);
+            let ride = |it: &Sprung<R>| it.ride(state, time, shaken, it.guess(state));
+            mount.map_or(Ride::default(), ride)
+        };
+        let drag = |i: usize| {
+            let race = self.rings[i].race.as_ref();
+            race.map_or(Drag::Runs(R::ZERO), |it| it.guess(&state.seats[i].race))
+        };
+        let limited = self.repeats.then(|| self.cut_at_first(state));
+        let mut passage = Passage {
+            time,
+            moved: [Vector::default(); Q],
+            kick: [Vector::default(); Q],
+            rides: from_fn(ride),
+            presses: [None; N],
+            cut: limited.flatten(),
+            pushed: [[Vector::default(); 2]; N],
+            stopped: [false; N],
+            drags: from_fn(drag),
+            spun: R::ZERO,
+            unbalance: self.unbalance(state, time),
+            shaken,
+            rubs: true,
+            solved: true,
+            systems: 0,
+            inverse: [[Vector::default(); Q]; Q],
+        };
+        self.go_free(state, &mut passage);
         self.press(state, &mut passage);
         if self.repeats {
             self.repeat(state, &mut passage);
@@ -143,40 +172,6 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     }
 
     /// Without any wall.
-    fn free(&self, state: &CoupledState<R, N, Q>, time: R) -> Passage<R, N, Q> {
-        let shaken = self.shaken(state, time);
-        let ride = |i: usize| {
-            let (mount, state) = (self.rings[i].mount.as_ref(), &state.seats[i].mount);
-            let ride = |it: &Sprung<R>| it.ride(state, time, shaken, it.guess(state));
-            mount.map_or(Ride::default(), ride)
-        };
-        let drag = |i: usize| {
-            let race = self.rings[i].race.as_ref();
-            race.map_or(Drag::Runs(R::ZERO), |it| it.guess(&state.seats[i].race))
-        };
-        let limited = self.repeats.then(|| self.cut_at_first(state));
-        let mut passage = Passage {
-            time,
-            moved: [Vector::default(); Q],
-            kick: [Vector::default(); Q],
-            rides: from_fn(ride),
-            presses: [None; N],
-            cut: limited.flatten(),
-            pushed: [[Vector::default(); 2]; N],
-            stopped: [false; N],
-            drags: from_fn(drag),
-            spun: R::ZERO,
-            unbalance: self.unbalance(state, time),
-            shaken,
-            rubs: true,
-            solved: true,
-            systems: 0,
-            inverse: [[Vector::default(); Q]; Q],
-        };
-        self.go_free(state, &mut passage);
-        passage
-    }
-
     fn go_free(&self, state: &CoupledState<R, N, Q>, passage: &mut Passage<R, N, Q>) {
         let (time, half) = (passage.time, R::HALF * passage.time);
         let (places, velocities) = (state.places(), state.velocities());

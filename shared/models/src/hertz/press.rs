@@ -45,10 +45,21 @@ impl<R: Precision> Hertz<R> {
     }
 
     /// Gravity, and the wall where the rotor is in it, for `time` at its place.
+    #[inline]
     fn act(&self, state: &mut HertzState<R>, time: R, on_event: &mut impl FnMut(ModelEvent<R>)) {
-        let Some(mut touching) = state.touching else {
-            return self.fall(state, time);
-        };
+        match state.touching {
+            None => self.fall(state, time),
+            Some(touching) => self.press(state, touching, time, on_event),
+        }
+    }
+
+    fn press(
+        &self,
+        state: &mut HertzState<R>,
+        mut touching: Touching<R>,
+        time: R,
+        on_event: &mut impl FnMut(ModelEvent<R>),
+    ) {
         let law = &self.law;
         let [x, y] = state.position.map(Sum::value);
         let [u, v] = state.velocity.map(Sum::value);

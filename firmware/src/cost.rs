@@ -1,0 +1,18 @@
+//! What settings cost: cycles of a Cortex-M4F, as modelled. How they were measured: docs/build/timing.md.
+
+use touchdown_core::detect::DetectorConfig;
+
+/// Of a tick, mean, of a rotor that floats on a known orbit, seen by two planes: with no instants in the bank of the release,
+/// for each instant, and for each whose level a tick learns.
+const FLOATING: [f32; 3] = [6_942.0, 53.5, 137.0];
+
+/// Cycles that a tick of a floating rotor takes on average. Above those of a sample period the core is overloaded for good. A fall
+/// or a whirl takes more, for a while: its samples wait.
+pub fn floating(config: &DetectorConfig) -> f32 {
+    let tuning = &config.tuning;
+    let instants = f32::from(tuning.release_instants);
+    // Samples from one instant to the next, at which the levels are learnt.
+    let stride = (tuning.release_horizon * config.sample_rate / instants).max(1.0) as u16;
+    let [tick, instant, learnt] = FLOATING;
+    tick + instants * (instant + learnt / f32::from(stride))
+}
