@@ -3,9 +3,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use touchdown_base::paint::Paint;
 use touchdown_core::checksum::CRC;
 use touchdown_files::drop_log::{Dump, comtrade, is_sound, list, show, stream};
-use touchdown_base::paint::Paint;
 
 /// Bytes of the lifetime counters, of one record of them, and of a block.
 const HEAD: usize = 8192;

@@ -6,12 +6,12 @@
 use libfuzzer_sys::fuzz_target;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use touchdown_files::drop_log::Episode;
+use touchdown_firmware::board::default_config;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{Settings, Wiring};
 use touchdown_protocol::link::{Hello, Reply};
 use touchdown_protocol::wire::{Record, decode_record};
-use touchdown_firmware::board::default_config;
-use touchdown_files::drop_log::Episode;
 use touchdown_sim::live::{Said, Update, View, Watched, draw, line};
 
 /// Lines and columns of the terminal.

@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use touchdown_scene::Scene;
 use touchdown_run::explain::explain;
+use touchdown_scene::Scene;
 
 fuzz_target!(|text: &str| {
     if let Ok(scene) = Scene::parse("fuzz", text) {
