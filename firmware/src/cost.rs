@@ -7,7 +7,7 @@ use touchdown_core::detect::DetectorConfig;
 const FLOATING: [f32; 3] = [6_942.0, 53.5, 137.0];
 
 /// Cycles that a tick of a floating rotor takes on average. Above those of a sample period the core is overloaded for good. A fall
-/// or a whirl takes more, for a while: its samples wait.
+/// or a whirl takes more, for a while: 15 samples wait, further ones are lost.
 pub fn floating(config: &DetectorConfig) -> f32 {
     let tuning = &config.tuning;
     let instants = f32::from(tuning.release_instants);
