@@ -76,19 +76,14 @@ fn play(player: &Player, streams: Vec<Stream>) -> anyhow::Result<Vec<Found>> {
     Ok(worst.into_iter().zip(streams).collect())
 }
 
-fn worst(found: &[Found], of: impl Fn(&Stream) -> bool) -> Option<WorstTick> {
-    let of = found.iter().filter(|it| of(&it.1)).map(|it| it.0);
-    of.max_by_key(|it| it.modelled)
-}
-
 fn report(found: &[Found]) {
-    let worst = worst(found, |_| true).map(|it| it.to_string());
-    println!("  {} streams: {}", found.len(), worst.unwrap_or_default());
+    let worst = found.iter().map(|it| it.0).max_by_key(|it| it.modelled);
+    let worst = worst.map_or_else(String::new, |it| it.to_string());
+    println!("  {} streams: {worst}", found.len());
 }
 
 /// What the corpus says of itself.
 fn head(found: &[Found], count: usize, seed: u64, at_random: WorstTick) -> anyhow::Result<String> {
-    let plain = worst(found, Stream::is_plain).map_or("none".into(), |it| it.to_string());
     let mut git = Command::new("git");
     git.args(["rev-parse", "--short", "HEAD"]);
     let commit = output(git.current_dir(workspace()))?;
@@ -98,7 +93,6 @@ fn head(found: &[Found], count: usize, seed: u64, at_random: WorstTick) -> anyho
         "The worst streams that were found for the tick, by its modelled cycles; each of another random stream.\n\
          Written by cargo xtask budget --search {count} --seed {seed} after {played} streams, {date} at {commit}.\n\
          What the numbers are: xtask/src/budget/stream.rs.\n\
-         Worst of the random half: {at_random}.\n\
-         Worst without tachometers, 16 instants at most: {plain}."
+         Worst of the random half: {at_random}."
     ))
 }

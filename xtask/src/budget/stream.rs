@@ -33,8 +33,9 @@ const FIELDS: [Field; 24] = [
     ("seed", 1.0, 1e6, true),
     ("speed_known", 0.0, 1.0, true),
     ("levitation_known", 0.0, 1.0, true),
-    ("tachometers", 0.0, 1.0, true),
-    ("instants", 4.0, 32.0, true),
+    // Of each bank: as many as a board with an F405 accepts, and as any configuration may have.
+    ("release_instants", 4.0, 16.0, true),
+    ("impact_instants", 4.0, 32.0, true),
     ("spin", -6_000.0, 6_000.0, false),
     ("mounting_angle", -0.8, 0.8, false),
     // Of all channels, by a commissioning check.
@@ -100,15 +101,6 @@ impl Stream {
             };
         }
         near
-    }
-
-    /// Has neither tachometers nor more instants than the default.
-    pub fn is_plain(&self) -> bool {
-        let has = |name: &str, most| {
-            let mut all = FIELDS.iter().zip(self.0);
-            all.any(|(field, number)| field.0 == name && number <= most)
-        };
-        has("tachometers", 0.0) && has("instants", 16.0)
     }
 
     /// As the image reads it.

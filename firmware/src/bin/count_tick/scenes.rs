@@ -41,8 +41,8 @@ pub(super) struct Scene {
     seed: u32,
     /// An inner ring that is watched.
     ring: bool,
-    /// Instants of each bank, where not the default.
-    instants: Option<u8>,
+    /// Instants of the banks of release and impact, where not the default.
+    instants: Option<[u8; 2]>,
     /// rad/s, where not the default.
     spin: Option<f32>,
     /// Angle at which the sensors are mounted, rad, and what a commissioning check found of all channels.
@@ -134,7 +134,7 @@ pub(super) const SCENES: [Scene; 14] = [
     },
     Scene {
         name: "drop, 8 instants",
-        instants: Some(8),
+        instants: Some([8; 2]),
         ..DROP
     },
     Scene {
@@ -202,7 +202,8 @@ impl Scene {
         #[rustfmt::skip]
         let [
             release, apart, kick_a, kick_b, friction, restitution, clearance_a, clearance_b, orbit, runout, noise, seed,
-            speed_known, levitation_known, ring, instants, spin, mounting_angle, gain, skew, kind, channel, from, length,
+            speed_known, levitation_known, release_instants, impact_instants, spin, mounting_angle, gain, skew,
+            kind, channel, from, length,
         ] = numbers;
         let (release, apart) = (release as u32, apart as i32);
         Self {
@@ -219,8 +220,8 @@ impl Scene {
             clearance: [clearance_a, clearance_b].map(f64::from),
             noise,
             seed: seed as u32,
-            ring: ring != 0.0,
-            instants: Some(instants as u8),
+            ring: false,
+            instants: Some([release_instants, impact_instants].map(|it| it as u8)),
             spin: Some(spin),
             mounting_angle,
             found: (gain != 1.0 || skew != 0.0).then_some(PlaneCalibration {
@@ -249,9 +250,9 @@ impl Scene {
             edge_error: 0.01,
             window: 0.005,
         });
-        if let Some(instants) = self.instants {
-            config.detector.tuning.release_instants = instants;
-            config.detector.tuning.impact_instants = instants;
+        if let Some([release, impact]) = self.instants {
+            config.detector.tuning.release_instants = release;
+            config.detector.tuning.impact_instants = impact;
         }
         config.detector.machine.spin = self.spin.unwrap_or(config.detector.machine.spin);
         config.sensing.mounting_angle = [self.mounting_angle; PLANES];
