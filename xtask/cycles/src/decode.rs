@@ -69,13 +69,18 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     it
 }
 
-/// The address `by` above or below that which code at `address` sees as its own, aligned.
-fn offset(address: u32, up: bool, by: u32) -> u32 {
-    let base = (address + 4) & !3;
-    if up {
-        base.wrapping_add(by)
-    } else {
-        base.wrapping_sub(by)
+impl Instruction {
+    /// It loads the literal `by` above that address which code here sees as its own, aligned.
+    fn load_above(&mut self, by: u32) {
+        self.literal = Some(((self.address + 4) & !3).wrapping_add(by));
+    }
+
+    /// Of a wide load: a literal where its base is the address of the code, `by` above or below it by the U bit.
+    fn load_literal(&mut self, first: u16, by: u32) {
+        if first & 0xf == 0xf {
+            let up = first & 0x80 != 0;
+            self.load_above(if up { by } else { by.wrapping_neg() });
+        }
     }
 }
 
@@ -83,7 +88,7 @@ fn narrow(it: &mut Instruction, first: u16) {
     let of_list = |list: u16| Kind::Multiple(list.count_ones() as u8);
     (it.kind, it.loads) = match first {
         0x4800..0x5000 => {
-            it.literal = Some(offset(it.address, true, u32::from(first & 0xff) * 4));
+            it.load_above(u32::from(first & 0xff) * 4);
             (Kind::Load, true)
         }
         0x5000..0x5600 => (Kind::LateStore, false),
@@ -111,8 +116,8 @@ fn wide_multiple(it: &mut Instruction, first: u16, second: u16) {
     } else if first & 0xfff0 == 0xe8d0 && second & 0xffe0 == 0xf000 {
         Kind::TableBranch
     } else if bit(8) || bit(5) {
-        if it.loads && first & 0xf == 0xf {
-            it.literal = Some(offset(it.address, bit(7), u32::from(second & 0xff) * 4));
+        if it.loads {
+            it.load_literal(first, u32::from(second & 0xff) * 4);
         }
         Kind::Multiple(2)
     } else if it.loads {
@@ -128,10 +133,7 @@ fn wide_single(it: &mut Instruction, first: u16, second: u16) {
         _ if first & 0xff10 == 0xf800 => Kind::Store,
         _ if first & 0xfe10 == 0xf810 => {
             it.loads = true;
-            if first & 0xf == 0xf {
-                let up = first & 0x80 != 0;
-                it.literal = Some(offset(it.address, up, u32::from(second & 0xfff)));
-            }
+            it.load_literal(first, u32::from(second & 0xfff));
             Kind::Load
         }
         _ if first & 0xff80 == 0xfb00 && second & 0xf000 != 0xf000 => Kind::MultiplyAdd,
@@ -178,9 +180,8 @@ fn floating(it: &mut Instruction, first: u16, second: u16) {
             _ => Kind::Multiple(words as u8),
         };
         it.loads = loads;
-        if loads && single && first & 0xf == 0xf {
-            let up = first & 0x80 != 0;
-            it.literal = Some(offset(it.address, up, u32::from(second & 0xff) * 4));
+        if loads && single {
+            it.load_literal(first, u32::from(second & 0xff) * 4);
         }
         it.fp_reads = if loads { 0 } else { at_d(words) };
     } else if second & 0x10 != 0 {

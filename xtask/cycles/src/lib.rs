@@ -13,5 +13,3 @@ mod plugin;
 
 /// Where the flash begins.
 const FLASH: u32 = 0x0800_0000;
-/// All of it.
-const FLASH_BYTES: u32 = 0x0010_0000;
