@@ -2,9 +2,9 @@
 
 use std::env;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::toolchain::{TARGET, Toolchain, emulator_packages};
+use crate::toolchain::{EMULATOR_PACKAGES, TARGET, Toolchain, output};
 
 /// What set-up has to know of the machine.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ impl Machine {
     pub fn look() -> Self {
         let target_installed = has_target();
         let toolchain = Toolchain::choose(target_installed, rustup_may_download());
-        let needed = toolchain.packages().iter().chain(emulator_packages());
+        let needed = toolchain.packages().iter().chain(EMULATOR_PACKAGES);
         Self {
             toolchain,
             target_installed,
@@ -62,11 +62,6 @@ pub fn finds(program: &str) -> bool {
 
 /// What `program` prints, if it succeeds.
 fn answer(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program)
-        .args(arguments)
-        .stderr(Stdio::null())
-        .output()
-        .ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    output.status.success().then(|| text.trim().to_owned())
+    let text = output(Command::new(program).args(arguments)).ok()?;
+    Some(text.trim().to_owned())
 }

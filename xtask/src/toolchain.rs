@@ -11,6 +11,8 @@ use crate::workspace;
 
 /// The microcontroller: Cortex-M4 with a single-precision floating-point unit.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
+/// Debian packages of the emulator.
+pub const EMULATOR_PACKAGES: &[&str] = &["qemu-system-arm"];
 
 /// A compiler for the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,11 +50,6 @@ impl Toolchain {
         cargo.args(["rustc", "--target", TARGET]);
         cargo
     }
-}
-
-/// Debian packages of the emulator.
-pub fn emulator_packages() -> &'static [&'static str] {
-    &["qemu-system-arm"]
 }
 
 /// Cargo for the desktop's crates: the one that runs this program.

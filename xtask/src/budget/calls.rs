@@ -4,9 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, ensure};
 
-/// What marks a function that calls through a pointer.
-pub const POINTERS: &str = "pointers in ";
-
+/// A function of the image.
 #[derive(Clone, Debug)]
 pub struct Function {
     pub name: String,
@@ -14,18 +12,15 @@ pub struct Function {
     pub size: u64,
     /// Stack that it takes itself, bytes, where the compiler told.
     pub frame: Option<u64>,
-}
-
-#[derive(Clone, Debug)]
-struct Node {
-    function: Function,
+    /// Addresses that it calls.
     calls: BTreeSet<u64>,
+    /// Whether it calls through a pointer.
     through_pointer: bool,
 }
 
 /// Who calls whom, by address.
 #[derive(Clone, Debug)]
-pub struct Graph(BTreeMap<u64, Node>);
+pub struct Graph(BTreeMap<u64, Function>);
 
 /// The deepest chain from a function.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -33,8 +28,10 @@ pub struct Deepest {
     pub bytes: u64,
     /// Frame and name, from the outermost.
     pub chain: Vec<String>,
-    /// What could add to it.
-    pub open: Vec<String>,
+    /// Functions that can be called and have no stated frame: what they take is not in it.
+    pub frameless: BTreeSet<String>,
+    /// Functions that can be called and call through a pointer: likewise.
+    pub pointers: BTreeSet<String>,
 }
 
 /// A branch out of line.
@@ -42,6 +39,20 @@ pub struct Deepest {
 enum Branch {
     To(u64),
     ThroughPointer,
+}
+
+impl Function {
+    /// Without its calls yet.
+    pub fn new(name: String, address: u64, size: u64, frame: Option<u64>) -> Self {
+        Self {
+            name,
+            address,
+            size,
+            frame,
+            calls: BTreeSet::new(),
+            through_pointer: false,
+        }
+    }
 }
 
 impl Graph {
@@ -59,52 +70,43 @@ impl Graph {
             let bytes = code.get(at..at + 2)?;
             Some(u16::from_le_bytes([bytes[0], bytes[1]]))
         };
-        let nodes = functions.into_iter().map(|function| {
-            let end = function.address + function.size;
-            let mut node = Node {
-                calls: BTreeSet::new(),
-                through_pointer: false,
-                function,
-            };
-            let mut at = node.function.address;
-            while at < end {
+        let with_calls = functions.into_iter().map(|mut function| {
+            let own = function.address..function.address + function.size;
+            let mut at = own.start;
+            while at < own.end {
                 let Some(first) = half(at) else { break };
                 let second = half(at + 2).filter(|_| first >= 0xe800);
                 match branch(at, first, second) {
                     _ if !is_code(at) => {}
-                    Some(Branch::To(to)) if to < node.function.address || to >= end => {
-                        node.calls.insert(to);
-                    }
-                    Some(Branch::ThroughPointer) => node.through_pointer = true,
+                    Some(Branch::To(to)) if !own.contains(&to) => _ = function.calls.insert(to),
+                    Some(Branch::ThroughPointer) => function.through_pointer = true,
                     _ => {}
                 }
                 at += if first >= 0xe800 && is_code(at) { 4 } else { 2 };
             }
-            (node.function.address, node)
+            (own.start, function)
         });
-        Self(nodes.collect())
+        Self(with_calls.collect())
     }
 
     /// Whether the compiler told what stack they take.
     pub fn knows_frames(&self) -> bool {
-        self.0.values().any(|it| it.function.frame.is_some())
+        self.0.values().any(|it| it.frame.is_some())
     }
 
     /// Functions that call one of such a name, and have none themselves.
     pub fn callers(&self, is_such: impl Fn(&str) -> bool) -> BTreeSet<&str> {
-        let named = |address: &u64| Some(&*self.0.get(address)?.function.name);
-        let calls = |it: &&Node| it.calls.iter().filter_map(named).any(&is_such);
-        let names = self.0.values().filter(calls);
-        let names = names.map(|it| &*it.function.name);
+        let is_such_at = |address: &u64| self.0.get(address).is_some_and(|it| is_such(&it.name));
+        let callers = (self.0.values()).filter(|it| it.calls.iter().any(is_such_at));
+        let names = callers.map(|it| &*it.name);
         names.filter(|it| !is_such(it)).collect()
     }
 
     /// From the function of this name.
     pub fn deepest(&self, name: &str) -> anyhow::Result<Deepest> {
-        let start = self.0.values().find(|it| it.function.name == name);
+        let start = self.0.values().find(|it| it.name == name);
         let start = start.with_context(|| format!("the image has no {name}"))?;
-        let mut known = BTreeMap::new();
-        self.below(start.function.address, &mut vec![], &mut known)
+        self.below(start.address, &mut vec![], &mut BTreeMap::new())
     }
 
     fn below(
@@ -116,35 +118,32 @@ impl Graph {
         if let Some(deepest) = known.get(&address) {
             return Ok(deepest.clone());
         }
-        let Some(node) = self.0.get(&address) else {
-            return Ok(Deepest {
-                open: vec![format!("{address:#x}")],
-                ..Deepest::default()
-            });
+        let mut deepest = Deepest::default();
+        let Some(function) = self.0.get(&address) else {
+            deepest.frameless.insert(format!("{address:#x}"));
+            return Ok(deepest);
         };
-        let name = &node.function.name;
+        let name = &function.name;
         ensure!(!path.contains(&address), "{name} calls itself: no bound");
         path.push(address);
-        let mut deepest = Deepest::default();
-        let mut open = BTreeSet::new();
-        for &callee in &node.calls {
+        for &callee in &function.calls {
             let below = self.below(callee, path, known)?;
-            open.extend(below.open.iter().cloned());
+            deepest.frameless.extend(below.frameless);
+            deepest.pointers.extend(below.pointers);
             if below.bytes >= deepest.bytes {
-                deepest = below;
+                (deepest.bytes, deepest.chain) = (below.bytes, below.chain);
             }
         }
         path.pop();
-        if node.through_pointer {
-            open.insert(format!("{POINTERS}{name}"));
+        if function.through_pointer {
+            deepest.pointers.insert(name.clone());
         }
-        if node.function.frame.is_none() {
-            open.insert(name.clone());
+        if function.frame.is_none() {
+            deepest.frameless.insert(name.clone());
         }
-        let frame = node.function.frame.unwrap_or(0);
+        let frame = function.frame.unwrap_or(0);
         deepest.bytes += frame;
         deepest.chain.insert(0, format!("{frame:5} {name}"));
-        deepest.open = open.into_iter().collect();
         known.insert(address, deepest.clone());
         Ok(deepest)
     }
@@ -193,12 +192,7 @@ mod tests {
     use super::*;
 
     fn function(name: &str, address: u64, size: u64, frame: Option<u64>) -> Function {
-        Function {
-            name: name.into(),
-            address,
-            size,
-            frame,
-        }
+        Function::new(name.into(), address, size, frame)
     }
 
     #[test]
@@ -229,7 +223,7 @@ mod tests {
         let graph = Graph::new(0, &code, &code_only, functions);
         let deepest = graph.deepest("main").unwrap();
         assert_eq!(deepest.bytes, 108);
-        assert_eq!(deepest.open, ["b"]);
+        assert!(deepest.frameless.iter().eq(["b"]));
         assert!(graph.deepest("none").is_err());
     }
 

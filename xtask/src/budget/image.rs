@@ -1,6 +1,6 @@
 //! What an image's symbols and code say: what the tick can reach, and the stack.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use addr2line::gimli::{EndianSlice, LittleEndian, Reader};
 use anyhow::{Context, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-use super::calls::{self, Function, Graph};
+use super::calls::{Deepest, Function, Graph};
 use crate::files;
 
 /// Names of what a panic needs.
@@ -65,45 +65,36 @@ fn is_soft_float(name: &str) -> bool {
         || (name.starts_with("__") && name.contains("df"))
 }
 
-/// Stack of an image, in bytes.
+/// Stack of an image: the deepest chains from the start, from the tick on top of it, and from sampling on top of that.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Stack {
-    main: u64,
-    /// Of the tick, and of sampling on top of it.
-    interrupts: [u64; 2],
-    /// Functions called through a pointer, or compiled elsewhere, whose frames are not in it.
-    open: Vec<String>,
-}
+pub struct Stack([Deepest; 3]);
 
 impl Stack {
-    /// Functions that call through a pointer.
-    fn pointers(&self) -> impl Iterator<Item = &str> {
-        let open = self.open.iter();
-        open.filter_map(|it| it.strip_prefix(calls::POINTERS))
-    }
-
-    /// Of the deepest chain from the start, and of the interrupts on top of it.
+    /// Of all three, and of what the core puts between them.
     pub fn bytes(&self) -> u64 {
-        let [tick, sampling] = self.interrupts;
-        self.main + EXCEPTION_FRAME + tick + EXCEPTION_FRAME + sampling
+        let own: u64 = self.0.iter().map(|it| it.bytes).sum();
+        own + 2 * EXCEPTION_FRAME
     }
 }
 
 impl fmt::Display for Stack {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (main, [tick, sampling]) = (self.main, self.interrupts);
+        let [main, tick, sampling] = self.0.each_ref().map(|it| it.bytes);
+        let frameless: BTreeSet<_> = self.0.iter().flat_map(|it| &it.frameless).collect();
+        let pointers: BTreeSet<_> = self.0.iter().flat_map(|it| &it.pointers).collect();
+        let pointers: Vec<_> = pointers.into_iter().map(String::as_str).collect();
         write!(
             f,
             "{} bytes: main {main}, tick {tick}, sampling {sampling}, registers twice {EXCEPTION_FRAME}; not in it: {} functions \
              without a stated frame, and pointers in {}",
             self.bytes(),
-            self.open.len() - self.pointers().count(),
-            self.pointers().collect::<Vec<_>>().join(", ")
+            frameless.len(),
+            pointers.join(", ")
         )
     }
 }
 
-/// Adds up the deepest chains.
+/// Finds the deepest chains, and prints them.
 pub fn stack(image: &Path) -> anyhow::Result<Stack> {
     let bytes = files::bytes(image)?;
     let graph = graph(&bytes)?;
@@ -115,15 +106,11 @@ pub fn stack(image: &Path) -> anyhow::Result<Stack> {
         }
         Ok::<_, anyhow::Error>(deepest)
     };
-    let (main, tick, sampling) = (deepest("Reset")?, deepest("PendSV")?, deepest("ADC")?);
-    let mut open = [main.open, tick.open, sampling.open].concat();
-    open.sort();
-    open.dedup();
-    Ok(Stack {
-        main: main.bytes,
-        interrupts: [tick.bytes, sampling.bytes],
-        open,
-    })
+    Ok(Stack([
+        deepest("Reset")?,
+        deepest("PendSV")?,
+        deepest("ADC")?,
+    ]))
 }
 
 fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
@@ -141,13 +128,14 @@ fn graph(elf: &[u8]) -> anyhow::Result<Graph> {
         if name.starts_with("$t") || name.starts_with("$d") {
             is_code.insert(address, name.starts_with("$t"));
         } else if symbol.kind() == SymbolKind::Text && symbol.size() > 0 {
-            let address = address & !1;
-            functions.push(Function {
-                name: format!("{:#}", rustc_demangle::demangle(name)),
+            let (address, name) = (address & !1, rustc_demangle::demangle(name));
+            let frame = frames.get(&address).copied();
+            functions.push(Function::new(
+                format!("{name:#}"),
                 address,
-                size: symbol.size(),
-                frame: frames.get(&address).copied(),
-            });
+                symbol.size(),
+                frame,
+            ));
         }
     }
     Ok(Graph::new(text.address(), code, &is_code, functions))

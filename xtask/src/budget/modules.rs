@@ -23,15 +23,14 @@ pub fn modules(image: &Path) -> anyhow::Result<Vec<Module>> {
     let context = Context::from_dwarf(Dwarf::load(section)?)?;
     let mut sums = BTreeMap::new();
     for (_, bytes, place) in context.find_location_range(FLASH.start, FLASH.end)? {
-        let sum: &mut u64 = sums
+        *sums
             .entry(module(place.file.unwrap_or_default()))
-            .or_default();
-        *sum += bytes;
+            .or_insert(0) += bytes;
     }
-    let modules = sums.into_iter();
-    let mut modules: Vec<_> = modules
-        .map(|(module, bytes)| Module { module, bytes })
-        .collect();
+    let named = sums
+        .into_iter()
+        .map(|(module, bytes)| Module { module, bytes });
+    let mut modules: Vec<_> = named.collect();
     modules.sort_by_key(|it| std::cmp::Reverse(it.bytes));
     Ok(modules)
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 
-pub use self::list::Fault;
+pub use self::list::{Fault, faults};
 use self::test::Test;
 use crate::workspace;
 
@@ -61,15 +61,6 @@ fn verdict(fault: &Fault, found: Option<Found>) -> Result<String, String> {
         (Some(found), Some(_)) => Err(format!("{found}, but is listed as equivalent")),
         (None, None) => Err(format!("{title}: SURVIVED")),
     }
-}
-
-/// All of the list, each of which can be planted.
-pub fn faults() -> anyhow::Result<Vec<Fault>> {
-    let faults = list::read(&workspace().join("xtask/faults"))?;
-    for fault in &faults {
-        fault.check(workspace())?;
-    }
-    Ok(faults)
 }
 
 /// The copy of the sources, and what is built from it.

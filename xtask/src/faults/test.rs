@@ -58,8 +58,7 @@ impl Test {
             .arg(target)
             .current_dir(tree)
             // A fault is a small change: all else is as it was.
-            .env("CARGO_INCREMENTAL", "1")
-            .stderr(Stdio::piped());
+            .env("CARGO_INCREMENTAL", "1");
         let built = cargo.output().context("cannot start cargo")?;
         let errors = String::from_utf8_lossy(&built.stderr);
         let text = &self.text;

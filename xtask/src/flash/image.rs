@@ -70,8 +70,7 @@ pub fn check(elf: &[u8], chip: &Chip) -> anyhow::Result<Layout> {
         stack % 8 == 0 && chip.ram.start < stack && stack <= chip.ram.end,
         "the stack begins at {stack:#010x}, which is not in RAM"
     );
-    let below = in_ram.iter().find(|it| it.start < stack);
-    if let Some(data) = below {
+    if let Some(data) = in_ram.iter().find(|it| it.start < stack) {
         bail!(
             "data lie at {}, below the stack, which could overflow into them unseen",
             shown(data)

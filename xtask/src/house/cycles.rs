@@ -1,6 +1,6 @@
 //! Files of a crate that import one another in a circle.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graphmap::DiGraphMap;
@@ -9,31 +9,26 @@ use super::source::Source;
 
 /// The circles of imports among `sources`, all of one crate, by module path.
 pub fn cycles(sources: &[Source]) -> Vec<Vec<String>> {
-    let numbers: BTreeMap<&[String], usize> = (sources.iter().enumerate())
-        .map(|(number, source)| (source.module.as_slice(), number))
-        .collect();
-    let mut graph = DiGraphMap::<usize, ()>::new();
-    for (from, source) in sources.iter().enumerate() {
-        for import in &source.imports {
-            let target = absolute(&source.module, import).and_then(|it| file_of(&numbers, &it));
+    let modules: BTreeSet<&[String]> = sources.iter().map(|it| it.module.as_slice()).collect();
+    let mut graph = DiGraphMap::<&[String], ()>::new();
+    for Source {
+        module, imports, ..
+    } in sources
+    {
+        for path in imports.iter().filter_map(|it| absolute(module, it)) {
+            // The file that the longest beginning of the path names.
+            let mut beginnings = (1..=path.len()).rev().map(|length| &path[..length]);
+            let file = beginnings.find_map(|it| modules.get(it).copied());
             // A module and what lies within it are one thing: the outer lists the inner.
-            let related = target.is_none_or(|to| {
-                let [a, b] = [&source.module, &sources[to].module];
-                a.starts_with(b) || b.starts_with(a)
-            });
-            if let (Some(to), false) = (target, related) {
-                graph.add_edge(from, to, ());
+            let unrelated = |to: &&[String]| !module.starts_with(to) && !to.starts_with(module);
+            if let Some(to) = file.filter(unrelated) {
+                graph.add_edge(module, to, ());
             }
         }
     }
-    let circles = tarjan_scc(&graph)
-        .into_iter()
-        .filter(|files| files.len() > 1);
-    let named = circles.map(|files| {
-        let mut names: Vec<_> = files
-            .into_iter()
-            .map(|it| sources[it].module.join("::"))
-            .collect();
+    let circles = tarjan_scc(&graph).into_iter();
+    let named = circles.filter(|files| files.len() > 1).map(|files| {
+        let mut names: Vec<_> = files.iter().map(|it| it.join("::")).collect();
         names.sort();
         names
     });
@@ -57,13 +52,6 @@ fn absolute(module: &[String], import: &[String]) -> Option<Vec<String>> {
         }
     }
     Some(path)
-}
-
-/// The file that the longest beginning of `path` names.
-fn file_of(numbers: &BTreeMap<&[String], usize>, path: &[String]) -> Option<usize> {
-    (1..=path.len())
-        .rev()
-        .find_map(|length| numbers.get(&path[..length]).copied())
 }
 
 #[cfg(test)]
