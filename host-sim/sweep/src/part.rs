@@ -11,7 +11,7 @@ use csv::{StringRecord, StringRecordsIntoIter};
 use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
-use super::record::columns;
+use super::record::{Record, columns};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, LARGEST_TOML, reason};
 use touchdown_files::stream::{Account, Bounded};
@@ -128,12 +128,19 @@ impl PartReader {
         })
     }
 
-    /// The row of drop `index`, which must be the next.
-    pub fn row(&mut self, index: u64) -> Result<StringRecord, Failure> {
+    /// The row of drop `index`, which must be the next, and what it says.
+    pub fn row(&mut self, index: u64) -> Result<(StringRecord, Record), Failure> {
         let row = self.rows.next().and_then(Result::ok).filter(|row| {
             row.len() == self.columns && row.get(0).is_some_and(|it| it == index.to_string())
         });
-        row.ok_or_else(|| damaged(&self.name, index))
+        let read = row.and_then(|row| Some((Record::of_row(&row)?, row)));
+        let (record, row) = read.ok_or_else(|| {
+            let rule = format!(
+                "the row of drop {index} is missing or damaged; remove the file, and run the part again"
+            );
+            InputError::of_file(&self.name, rule)
+        })?;
+        Ok((row, record))
     }
 }
 
@@ -145,14 +152,6 @@ impl Origin {
             scene: plan.scene_text.clone(),
         }
     }
-}
-
-/// That the row of drop `index` in the part `name` is not as it was written.
-pub(super) fn damaged(name: &str, index: u64) -> Failure {
-    let rule = format!(
-        "the row of drop {index} is missing or damaged; remove the file, and run the part again"
-    );
-    InputError::of_file(name, rule).into()
 }
 
 /// The first line of a part of `plan`.
@@ -172,7 +171,7 @@ pub(super) fn plan_of(path: &Path) -> Result<Plan, Failure> {
 fn opened(path: &Path) -> Result<(Origin, BufReader<File>), Failure> {
     let name = path.display().to_string();
     let unread = |error: std::io::Error| InputError::of_file(&name, reason(&error));
-    let mut file = BufReader::new(File::open(path).map_err(unread)?);
+    let (mut file, _) = InputError::open(path)?;
     let mut line = Vec::new();
     (file.by_ref().take(LONGEST_LINE))
         .read_until(b'\n', &mut line)

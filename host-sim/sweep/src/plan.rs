@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json, json};
 use toml::{Spanned, Table, Value};
 
 use super::find::limit;
@@ -114,31 +115,25 @@ impl Plan {
         let file: PlanFile = tables(name, text)?;
         let fail = |span, rule: String| InputError::at_span(name, text, span, rule);
         let scene_name = file.scene.get_ref();
+        let of_scene = |what: &str| fail(file.scene.span(), format!("scene {scene_name:?}{what}"));
         let scene = Scene::parse(scene_name, scene_text).map_err(InputError::of_named_file)?;
         if scene.auto.is_some() {
-            let rule = format!(
-                "scene {scene_name:?} leaves the model open (fidelity = \"auto\"): a sweep needs one rung, which \
-                 `touchdown scene explain` chooses for one drop"
-            );
-            return Err(fail(file.scene.span(), rule));
+            return Err(of_scene(
+                " leaves the model open (fidelity = \"auto\"): a sweep needs one rung, which \
+                 `touchdown scene explain` chooses for one drop",
+            ));
         }
-        let heading = scene.heading().to_owned();
-        let base = toml::from_str(scene_text).map_err(|error| {
-            fail(
-                file.scene.span(),
-                format!("scene {scene_name:?}: {}", error.message()),
-            )
-        })?;
-        let find = match &file.find {
-            Some(rule) => Some(limit(rule.get_ref()).map_err(|it| fail(rule.span(), it))?),
-            None => None,
-        };
+        let base = toml::from_str(scene_text);
+        let base = base.map_err(|error| of_scene(&format!(": {}", error.message())))?;
+        let find = file.find.as_ref();
+        let find = find.map(|rule| limit(rule.get_ref()).map_err(|it| fail(rule.span(), it)));
+        let find = find.transpose()?;
         let default = if find.is_some() { DROPS_TO_FIND } else { DROPS };
         let drops = file.drops.unwrap_or(Spanned::new(0..0, default));
         let mut plan = Self {
             name: name.to_owned(),
             scene_file: None,
-            title: file.title.unwrap_or(heading),
+            title: (file.title).unwrap_or_else(|| scene.heading().to_owned()),
             drops: *drops.get_ref(),
             until: if find.is_some() {
                 Until::Verdict
@@ -257,6 +252,13 @@ impl Plan {
     /// Drops in all.
     pub fn size(&self) -> u64 {
         self.points() * self.drops
+    }
+
+    /// Keys and values of a point of the grid, for programs.
+    pub(super) fn named_values(&self, point: u64) -> Map<String, Json> {
+        let values = self.listed.iter().zip(self.values(point));
+        // Numbers, texts and booleans are always JSON.
+        (values.map(|((key, _), value)| (key.clone(), json!(value)))).collect()
     }
 
     /// The listed values of a point; the first parameter changes slowest.

@@ -1,6 +1,7 @@
 //! What a drop of a sweep came to, and its row.
 
 use std::f64::consts::TAU;
+use std::io;
 
 use csv::StringRecord;
 use serde::Deserialize;
@@ -8,7 +9,9 @@ use serde::Deserialize;
 use super::draw::Drawn;
 use super::parameter::text;
 use super::plan::Plan;
+use touchdown_base::failure::Failure;
 use touchdown_base::history::{History, Regime};
+use touchdown_base::output::Output;
 use touchdown_scene::Scene;
 
 /// One drop, SI: the first and the last columns of its row.
@@ -107,6 +110,20 @@ pub(super) fn cells(plan: &Plan, drawn: &Drawn, record: &Record) -> Vec<String> 
     }
     cells.extend(MEASURED.map(|(_, cell)| cell(record)));
     cells
+}
+
+/// Writes rows of a table to `out`, as CSV.
+pub(super) fn put_rows<R: IntoIterator<Item: AsRef<[u8]>>>(
+    out: &mut Output,
+    rows: impl IntoIterator<Item = R>,
+) -> Result<(), Failure> {
+    let name = out.name().to_owned();
+    let mut table = csv::Writer::from_writer(out);
+    let mut rows = rows.into_iter();
+    let written = rows.try_for_each(|row| table.write_record(row));
+    (written.map_err(io::Error::from))
+        .and_then(|()| table.flush())
+        .map_err(Failure::output(&name))
 }
 
 /// Empty where there is no value.

@@ -1,18 +1,17 @@
 //! The results of a sweep, made from its parts, in the order of the drops.
 
 use std::collections::BTreeMap;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{io, iter};
 
 use serde::Serialize;
-use serde_json::json;
 
 use super::find::Found;
 use super::page::page;
 use super::parameter::text;
-use super::part::{Part, PartReader, blocks, damaged, drops, plan_of};
+use super::part::{Part, PartReader, blocks, drops, plan_of};
 use super::plan::{Plan, Until};
-use super::record::{NamedCell, Record, cell, columns};
+use super::record::{NamedCell, cell, columns, put_rows};
 use super::summary::{Gathered, Point, total};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::{InputError, reason};
@@ -90,31 +89,25 @@ pub fn write(plan: &Plan, paths: &[PathBuf], folder: &Path) -> Result<Results, F
         .map(|path| PartReader::open(path, plan))
         .collect::<Result<Vec<_>, _>>()?;
     let mut drops_out = Output::create(&folder.join("drops.csv").display().to_string())?;
-    let drops_name = drops_out.name().to_owned();
-    let failed = |error: csv::Error| Failure::output(&drops_name)(error.into());
-    let mut table = csv::Writer::from_writer(&mut drops_out);
-    table.write_record(columns(plan)).map_err(&failed)?;
+    put_rows(&mut drops_out, [columns(plan)])?;
     let mut points = Vec::new();
     let mut gathered = Gathered::default();
     let bar = progress::bar("write", blocks(plan));
     for block in 0..blocks(plan) {
-        let turn = (block % paths.len() as u64) as usize;
+        let part = &mut parts[(block % paths.len() as u64) as usize];
+        let mut rows = Vec::new();
         for index in drops(plan, block) {
-            let row = parts[turn].row(index)?;
-            table.write_record(&row).map_err(&failed)?;
-            let record = Record::of_row(&row);
-            let name = || paths[turn].display().to_string();
-            gathered.take(&record.ok_or_else(|| damaged(&name(), index))?);
+            let (row, record) = part.row(index)?;
+            gathered.take(&record);
+            rows.push(row);
             if (index + 1).is_multiple_of(plan.drops) {
-                let point = index / plan.drops;
-                points.push(std::mem::take(&mut gathered).finish(point, values(plan, point)));
+                points.push(std::mem::take(&mut gathered).finish(plan, index / plan.drops));
             }
         }
+        put_rows(&mut drops_out, &rows)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
-    table.flush().map_err(Failure::output(&drops_name))?;
-    drop(table);
     let mut results = Results::of(plan, points, None, folder)?;
     results.outputs.insert(0, drops_out);
     Ok(results)
@@ -137,14 +130,14 @@ impl Results {
             points: &points,
         });
         let json = json.map_err(|error| Failure::output("sweep.json")(error.into()))? + "\n";
-        let mut outputs = Vec::new();
-        for (name, text) in [
-            ("points.csv", points_csv(plan, &points)?),
-            ("sweep.json", json.clone()),
-            ("sweep.html", page(plan, &points, found.as_ref())),
-        ] {
-            let mut out = Output::create(&folder.join(name).display().to_string())?;
-            out.put(&text)?;
+        let create = |name: &str| Output::create(&folder.join(name).display().to_string());
+        let mut table = create("points.csv")?;
+        put_rows(&mut table, point_rows(plan, &points))?;
+        let mut outputs = vec![table];
+        let page = page(plan, &points, found.as_ref());
+        for (name, text) in [("sweep.json", &json), ("sweep.html", &page)] {
+            let mut out = create(name)?;
+            out.put(text)?;
             outputs.push(out);
         }
         Ok(Self {
@@ -154,15 +147,6 @@ impl Results {
             found,
         })
     }
-}
-
-/// Keys and values of a point of the grid.
-pub(super) fn values(plan: &Plan, point: u64) -> serde_json::Map<String, serde_json::Value> {
-    let values = plan.values(point);
-    (plan.listed.iter().zip(values))
-        // Numbers, texts and booleans are always JSON.
-        .map(|((key, _), value)| (key.clone(), json!(value)))
-        .collect()
 }
 
 /// Columns of `points.csv` after the values.
@@ -180,20 +164,16 @@ const MEASURED: [NamedCell<Point>; 9] = [
     ("end_load_max_n", |it| cell(it.end_load_max_n)),
 ];
 
-fn points_csv(plan: &Plan, points: &[Point]) -> Result<String, Failure> {
-    let failed = |error: csv::Error| Failure::output("points.csv")(error.into());
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let keys = plan.listed.iter().map(|(key, _)| key.as_str());
-    let measured = MEASURED.map(|(name, _)| name);
-    let head: Vec<_> = ["point"].into_iter().chain(keys).chain(measured).collect();
-    table.write_record(head).map_err(failed)?;
-    for it in points {
+/// `points.csv`, with its heading.
+fn point_rows(plan: &Plan, points: &[Point]) -> impl Iterator<Item = Vec<String>> {
+    let mut head = vec!["point".to_owned()];
+    head.extend(plan.listed.iter().map(|(key, _)| key.clone()));
+    head.extend(MEASURED.map(|(name, _)| name.to_owned()));
+    let row = |it: &Point| {
         let mut row = vec![it.point.to_string()];
         row.extend(plan.values(it.point).into_iter().map(text));
         row.extend(MEASURED.map(|(_, cell)| cell(it)));
-        table.write_record(row).map_err(failed)?;
-    }
-    let bytes = table.into_inner();
-    let bytes = bytes.map_err(|error| Failure::output("points.csv")(error.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+        row
+    };
+    iter::once(head).chain(points.iter().map(row))
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::draw::{Drawn, Scenes};
 use super::part::{Part, first_line};
 use super::plan::{Plan, Until};
-use super::record::{Record, cells, columns};
+use super::record::{Record, cells, columns, put_rows};
 use touchdown_base::failure::Failure;
 use touchdown_base::input_error::InputError;
 use touchdown_base::output::Output;
@@ -45,22 +45,16 @@ pub fn run(plan: &Plan, parts: &[Part], folder: &Path) -> Result<u64, Failure> {
 fn write(plan: &Plan, part: Part, folder: &Path, bar: &ProgressBar) -> Result<(), Failure> {
     let mut out = Output::create(&part.path(folder).display().to_string())?;
     out.put(&first_line(plan))?;
-    let name = out.name().to_owned();
-    let failed = |error: csv::Error| Failure::output(&name)(error.into());
-    let mut table = csv::Writer::from_writer(&mut out);
-    table.write_record(columns(plan)).map_err(&failed)?;
+    put_rows(&mut out, [columns(plan)])?;
     let blocks: Vec<_> = part.blocks(plan).collect();
     for blocks in blocks.chunks(TOGETHER) {
         let simulated: Vec<_> = (blocks.par_iter())
             .map(|drops| simulated(plan, drops.clone(), bar))
             .collect::<Result<_, _>>()?;
-        for record in simulated.into_iter().flatten() {
-            let row = cells(plan, &plan.draw(record.index), &record);
-            table.write_record(row).map_err(&failed)?;
-        }
+        let records = simulated.iter().flatten();
+        let rows = records.map(|it| cells(plan, &plan.draw(it.index), it));
+        put_rows(&mut out, rows)?;
     }
-    table.flush().map_err(Failure::output(&name))?;
-    drop(table);
     out.commit()
 }
 

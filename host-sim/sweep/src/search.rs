@@ -14,7 +14,7 @@ use super::draw::Scenes;
 use super::find::Found;
 use super::plan::Plan;
 use super::record::Record;
-use super::results::{Results, values};
+use super::results::Results;
 use super::summary::{Gathered, Point};
 use touchdown_base::failure::Failure;
 use touchdown_base::progress;
@@ -134,7 +134,7 @@ impl Search<'_> {
         folder: &Path,
     ) -> Result<(Plan, Results), Failure> {
         let key = self.plan.listed[0].0.clone();
-        let at = |point| values(self.plan, point)[&key].as_f64();
+        let at = |point| self.plan.named_values(point)[&key].as_f64();
         let found = Found {
             limit: self.limit,
             below_at: below.and_then(at),
@@ -150,7 +150,7 @@ impl Search<'_> {
             Point {
                 whirl_low,
                 whirl_high,
-                ..gathered.finish(point, values(&plan, point))
+                ..gathered.finish(&plan, point)
             }
         };
         let points = (0..).zip(self.tried).map(point).collect();

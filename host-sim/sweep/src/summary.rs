@@ -3,6 +3,7 @@
 use serde::Serialize;
 use strum::VariantArray;
 
+use super::plan::Plan;
 use super::record::Record;
 use touchdown_base::history::Regime;
 use touchdown_base::statistics::median;
@@ -70,7 +71,8 @@ impl Gathered {
         }
     }
 
-    pub fn finish(self, point: u64, values: serde_json::Map<String, serde_json::Value>) -> Point {
+    /// Those of a point of the grid.
+    pub fn finish(self, plan: &Plan, point: u64) -> Point {
         let [whirls, drops] = self.whirls();
         let backward = self.counts[Regime::BackwardWhirl as usize];
         let (whirl_low, whirl_high) = wilson::interval(whirls, drops);
@@ -80,7 +82,7 @@ impl Gathered {
         let [impact_speed_max_m_s, impulse_max_n_s, end_load_max_n] = self.greatest;
         Point {
             point,
-            values,
+            values: plan.named_values(point),
             drops,
             regimes: names.zip(self.counts.map(Into::into)).collect(),
             whirl_probability: whirls as f64 / drops as f64,
