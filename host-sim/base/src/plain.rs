@@ -37,6 +37,15 @@ fn is_obeyed(letter: char) -> bool {
     }
 }
 
+/// A line for each of the first `most` of a list, and how many more `what` there are.
+pub fn listed<T>(all: &[T], most: usize, what: &str, line: impl FnMut(&T) -> String) -> String {
+    let mut text: String = all.iter().take(most).map(line).collect();
+    if let more @ 1.. = all.len().saturating_sub(most) {
+        text += &format!("... {more} more {what}\n");
+    }
+    text
+}
+
 /// A number, with an exponent where it would be a row of zeros without.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number(pub f64);

@@ -3,11 +3,11 @@
 use touchdown_core::event::EventKind;
 
 use crate::report::monitor::unsound;
-use touchdown_base::history::{History, Phase, PhaseKind, Pulse};
+use touchdown_base::history::{History, Impact, Phase, PhaseKind, Pulse};
 use touchdown_base::paint::Paint;
-use touchdown_base::plain::shown;
+use touchdown_base::plain::{listed, shown};
 use touchdown_run::matching::{Match, Matches, match_events, regime_event};
-use touchdown_run::outcome::{DetectedEvent, Detection, Outcome};
+use touchdown_run::outcome::{DetectedEvent, Detection, Forecast, Outcome};
 use touchdown_run::timebase::Timebase;
 use touchdown_scene::Scene;
 use touchdown_scene::names::{phase_name, regime_name};
@@ -63,22 +63,20 @@ fn heading(scene: &Scene, paint: Paint) -> String {
 
 fn phases(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let head = "\nphase            from ms       to ms  detected       onset ms  latency ms";
-    let mut text = paint.bold(head) + "\n";
-    let phases = &outcome.truth.whole.phases;
-    for phase in phases.iter().take(LISTED) {
-        text += &format!(
-            "{:<12}{:>12}{:>12}",
+    let line = |phase: &Phase| {
+        let begins = |event: &&Match| (event.onset_s - phase.start_s).abs() <= SAME;
+        let event = event_of(phase).and_then(|it| matches.of_kind(it).find(begins));
+        let verdict = event.map(|it| verdict(it, &outcome.detection, paint));
+        format!(
+            "{:<12}{:>12}{:>12}{}\n",
             phase_name(phase.phase),
             millis(phase.start_s),
-            millis(phase.end_s)
-        );
-        let begins = |event: &&Match| (event.onset_s - phase.start_s).abs() <= SAME;
-        if let Some(event) = event_of(phase).and_then(|it| matches.of_kind(it).find(begins)) {
-            text += &verdict(event, &outcome.detection, paint);
-        }
-        text.push('\n');
-    }
-    text + &more(phases.len(), LISTED, "phases")
+            millis(phase.end_s),
+            verdict.unwrap_or_default()
+        )
+    };
+    let phases = &outcome.truth.whole.phases;
+    paint.bold(head) + "\n" + &listed(phases, LISTED, "phases", line)
 }
 
 /// The event that a phase begins with.
@@ -120,9 +118,7 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
     let off = ["accurate to", "model off by"][usize::from(outcome.by_reference)];
     let head =
         format!("\nimpact         at ms      mm/s{off:>13} onset error ms seen mm/s  latency ms");
-    let mut text = paint.bold(&head) + "\n";
-    let found = matches.of_kind(EventKind::Impact);
-    for (index, (impact, event)) in truth.iter().zip(found).take(LISTED).enumerate() {
+    let line = |&(index, impact, event): &(usize, &Impact, &Match)| {
         let off = if outcome.by_reference {
             let model = outcome.model.histories.whole.impacts.get(index);
             model.map(|model| seconds(model.state.time - impact.state.time))
@@ -130,15 +126,8 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
             let known = outcome.accuracy.as_ref().map(|it| it.impacts[index]);
             known.map(|it| it.map_or("not certain".to_owned(), |it| seconds(it.time_s)))
         };
-        text += &format!(
-            "{:<8}{:>12}{:>10.2}{:>13}",
-            index,
-            millis(impact.state.time),
-            impact.normal_speed * 1e3,
-            optional(off),
-        );
         let seen = event.detected.map(|index| &outcome.detection.events[index]);
-        text += &match seen {
+        let seen = match seen {
             Some(seen) => format!(
                 "{:>15}{:>10}{:>12}",
                 optional(event.onset_error_s.map(millis)),
@@ -147,9 +136,21 @@ fn impacts(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
             ),
             None => format!("{:>9}{}", "", paint.bad("missed")),
         };
-        text.push('\n');
-    }
-    text + &more(truth.len(), LISTED, "impacts") + &forces(&outcome.model.histories.whole)
+        format!(
+            "{:<8}{:>12}{:>10.2}{:>13}{seen}\n",
+            index,
+            millis(impact.state.time),
+            impact.normal_speed * 1e3,
+            optional(off),
+        )
+    };
+    let found = truth.iter().zip(matches.of_kind(EventKind::Impact));
+    let rows: Vec<_> = (0..)
+        .zip(found)
+        .map(|(index, (it, event))| (index, it, event))
+        .collect();
+    let listed = listed(&rows, LISTED, "impacts", line);
+    paint.bold(&head) + "\n" + &listed + &forces(&outcome.model.histories.whole)
 }
 
 /// The contact forces of the model's impacts, where it has any.
@@ -189,17 +190,16 @@ fn forecasts(detection: &Detection, paint: Paint) -> String {
         return String::new();
     }
     let head = "\npredicted        forward    backward whirls from ms";
-    let mut text = paint.bold(head) + "\n";
-    for forecast in all.iter().take(LISTED) {
-        text += &format!(
+    let line = |forecast: &Forecast| {
+        format!(
             "{:<12}{:>12.2}{:>12.2}{:>15}\n",
             millis(forecast.made_s),
             forecast.probability_forward,
             forecast.probability_backward,
             optional(forecast.begins_s.map(millis)),
-        );
-    }
-    text + &more(all.len(), LISTED, "forecasts")
+        )
+    };
+    paint.bold(head) + "\n" + &listed(all, LISTED, "forecasts", line)
 }
 
 fn severity(detection: &Detection) -> String {
@@ -271,8 +271,7 @@ fn extras(outcome: &Outcome, matches: &Matches, paint: Paint) -> String {
         Some(format!("{sensor}, told at {at} ms\n"))
     });
     let told: Vec<_> = told.collect();
-    text.extend(told.iter().take(LISTED).map(|line| paint.bad(line)));
-    text += &more(told.len(), LISTED, "sensor faults");
+    text += &listed(&told, LISTED, "sensor faults", |line| paint.bad(line));
     text + &samples_line(&outcome.detection)
 }
 
@@ -298,7 +297,7 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
         text +=
             "\nevent                   onset s      declared s              plane  speed mm/s\n";
     }
-    for event in detection.events.iter().take(REPLAYED) {
+    let line = |event: &DetectedEvent| {
         let speed = event.normal_speed_m_s.map(|v| format!("{:.2}", v * 1e3));
         let fault = (event.fault).map(|it| format!("  {} {}", it.channel, it.kind));
         let line = format!(
@@ -311,21 +310,15 @@ pub fn replay(stream: &str, detection: &Detection) -> String {
             speed.unwrap_or_default(),
             fault.unwrap_or_default(),
         );
-        text += &format!("{}\n", line.trim_end());
-    }
-    text += &more(detection.events.len(), REPLAYED, "events, with --json");
+        format!("{}\n", line.trim_end())
+    };
+    let what = "events, with --json";
+    text += &listed(&detection.events, REPLAYED, what, line);
     if detection.left_out > 0 {
         let left_out = detection.left_out;
         text += &format!("{left_out} further messages of the detector were counted, not kept\n");
     }
     text
-}
-
-fn more(count: usize, listed: usize, what: &str) -> String {
-    match count.saturating_sub(listed) {
-        0 => String::new(),
-        more => format!("... {more} more {what}\n"),
-    }
 }
 
 fn millis(seconds: f64) -> String {

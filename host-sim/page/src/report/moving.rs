@@ -55,14 +55,23 @@ fn phase_at(truth: &History, time: f64) -> PhaseKind {
     phase.map_or(PhaseKind::FreeFall, |phase| phase.phase)
 }
 
+/// Displacement of the retainer ring, m, and spin of its inner ring, rad/s; none where they do not move.
+fn ring_at(point: &TracePoint) -> ([f64; 2], f64) {
+    match point.moving {
+        Moving::Ring {
+            position,
+            race_spin,
+            ..
+        } => (position, race_spin),
+        _ => ([0.0; 2], 0.0),
+    }
+}
+
 /// Path of the rotor in a ring that moves itself.
 pub fn in_ring(scene: &Scene, outcome: &Outcome) -> Markup {
-    let relative = |point: &TracePoint| match point.moving {
-        Moving::Ring { position, .. } => {
-            let [x, y] = point.state.position;
-            at(point, [x - position[0], y - position[1]], point.phase)
-        }
-        _ => *point,
+    let relative = |point: &TracePoint| {
+        let ([x, y], [u, v]) = (point.state.position, ring_at(point).0);
+        at(point, [x - u, y - v], point.phase)
     };
     let trace: Vec<_> = outcome.trace.iter().map(relative).collect();
     let (clearance, spin) = (scene.retainer.clearance, scene.rotor.spin);
@@ -71,20 +80,12 @@ pub fn in_ring(scene: &Scene, outcome: &Outcome) -> Markup {
 
 /// Whether the retainer ring moves in the trace.
 pub fn ring_moves(outcome: &Outcome) -> bool {
-    let moves = |it: &TracePoint| match it.moving {
-        Moving::Ring { position, .. } => position != [0.0; 2],
-        _ => false,
-    };
-    outcome.trace.iter().any(moves)
+    outcome.trace.iter().any(|it| ring_at(it).0 != [0.0; 2])
 }
 
 /// Whether its inner ring turns.
 pub fn race_turns(outcome: &Outcome) -> bool {
-    let turns = |it: &TracePoint| match it.moving {
-        Moving::Ring { race_spin, .. } => race_spin != 0.0,
-        _ => false,
-    };
-    outcome.trace.iter().any(turns)
+    outcome.trace.iter().any(|it| ring_at(it).1 != 0.0)
 }
 
 /// Displacement of the ring against time.
@@ -92,10 +93,8 @@ pub fn ring(window: Window, outcome: &Outcome) -> Markup {
     let names = [("x (right)", "motion"), ("y (up)", "pulse")];
     let title = "Displacement of the retainer ring";
     let axis = [title, "\u{b5}m from its rest place"];
-    lines(axis, names, window, outcome, |point| match point.moving {
-        Moving::Ring { position, .. } => position.map(|x| x * MICRO),
-        _ => [0.0; 2],
-    })
+    let place = |point: &TracePoint| ring_at(point).0.map(|x| x * MICRO);
+    lines(axis, names, window, outcome, place)
 }
 
 /// Speeds of inner ring, cage and rotor against time; `cage` is the speed of the cage over the inner ring's.
@@ -105,11 +104,9 @@ pub fn speeds(cage: f64, window: Window, outcome: &Outcome) -> Markup {
     let names = [rotor, race, ("cage", "limit")];
     let title = "Speed of rotor, inner ring and cage";
     let axis = [title, "1/min, counter-clockwise"];
-    lines(axis, names, window, outcome, |point| match point.moving {
-        Moving::Ring { race_spin, .. } => {
-            [point.state.spin, race_spin, cage * race_spin].map(|speed| speed * rpm)
-        }
-        _ => [0.0; 3],
+    lines(axis, names, window, outcome, |point| {
+        let race = ring_at(point).1;
+        [point.state.spin, race, cage * race].map(|speed| speed * rpm)
     })
 }
 

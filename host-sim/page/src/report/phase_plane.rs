@@ -23,12 +23,8 @@ const HEIGHT: f64 = 330.0;
 /// Draws theta-dot against theta, theta from the bottom, counter-clockwise; of a fast whirl also its
 /// beginning.
 pub fn phase_plane(scene: &Scene, outcome: &Outcome) -> Markup {
-    let motion = || {
-        outcome
-            .trace
-            .iter()
-            .filter_map(|it| at_wall(&it.state, scene))
-    };
+    let trace = &outcome.trace;
+    let motion = || trace.iter().filter_map(|it| at_wall(&it.state, scene));
     let widest = motion().map(|it| it.0.abs()).fold(0.0, f64::max);
     let low = motion().map(|it| it.1).fold(0.0, f64::min);
     let high = motion().map(|it| it.1).fold(0.0, f64::max);

@@ -21,9 +21,16 @@ pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
     };
     let leftmost = swing.held_until(0.0, -FRAC_PI_2);
     let stops = |orbit: Orbit| move |phi: f64| orbit.square(phi).max(0.0).sqrt();
-    let between = |ends, low: &dyn Fn(f64) -> f64, high: &dyn Fn(f64) -> f64, class| {
+    // There along one speed (rad/s) and back along another, over a range of angles (rad).
+    let between = |(from, to), low: &dyn Fn(f64) -> f64, high: &dyn Fn(f64) -> f64, class| {
+        let angles = (0..=POINTS).map(|n| {
+            let part = 0.5 - 0.5 * (PI * f64::from(n) / f64::from(POINTS)).cos();
+            from + (to - from) * part
+        });
+        let there = angles.clone().map(|phi| (phi, low(phi)));
+        let back = angles.rev().map(|phi| (phi, high(phi)));
         let mut pen = chart.pen();
-        for (phi, rate) in outline(ends, low, high) {
+        for (phi, rate) in there.chain(back) {
             let rate = (side * rate).clamp(lowest, highest);
             pen.line_to(side * phi.to_degrees(), rate);
         }
@@ -40,19 +47,4 @@ pub fn areas(plane: &Plane, side: f64, chart: &Chart<'_>) -> Markup {
             (between((from, PI), &|phi| -stops(fast)(phi), &|phi| -stops(slow)(phi), "whirl"))
         }
     }
-}
-
-/// There along one speed (rad/s) and back along another, over a range of angles (rad).
-fn outline(
-    (from, to): (f64, f64),
-    low: &dyn Fn(f64) -> f64,
-    high: &dyn Fn(f64) -> f64,
-) -> Vec<(f64, f64)> {
-    let angles = (0..=POINTS).map(|n| {
-        let part = 0.5 - 0.5 * (PI * f64::from(n) / f64::from(POINTS)).cos();
-        from + (to - from) * part
-    });
-    let there = angles.clone().map(|phi| (phi, low(phi)));
-    let back = angles.rev().map(|phi| (phi, high(phi)));
-    there.chain(back).collect()
 }

@@ -83,21 +83,13 @@ pub fn impacts(scene: &Scene, outcome: &Outcome, matches: &Matches) -> Markup {
     let hard_found = hard().filter(|(_, it)| it.detected.is_some()).count();
     let detected = found.iter().filter(|it| it.detected.is_some()).count();
     let forces = model.has_forces();
-    let row = |((index, truth), &found): ((usize, _), &_)| Row {
-        index,
-        truth,
-        pulse: model.impacts.get(index).and_then(|it| it.pulse),
-        errors: model_errors(outcome, index),
-        found,
-    };
-    let rows: Vec<_> = truth.iter().enumerate().zip(&found).map(row).collect();
     html! {
         p {
             (truth.len()) " impacts, " (detected) " detected. Of the " (hard().count())
             " whose velocity jump reaches " (si(DESIGN_JUMP, "m/s"))
             ", from which detection is the design target, " (hard_found) " were detected."
         }
-        (impact_table(&rows, forces))
+        (impact_table(outcome, &found))
         p.note {
             "Normal speed: into the wall just before. The series ends where the bounce speed is below a "
             "cut-off; its last impacts are far below any sensor's noise. "
@@ -122,35 +114,31 @@ fn model_errors(outcome: &Outcome, index: usize) -> Option<[f64; 2]> {
     ])
 }
 
-/// An impact: as the sensors saw it, the model's pulse and errors, as detected.
-struct Row<'a> {
-    index: usize,
-    truth: &'a Impact,
-    pulse: Option<Pulse>,
-    errors: Option<[f64; 2]>,
-    found: &'a Match,
-}
-
-fn impact_table(rows: &[Row<'_>], forces: bool) -> Markup {
+/// Each impact as the sensors saw it, the model's pulse and errors, and as detected.
+fn impact_table(outcome: &Outcome, found: &[&Match]) -> Markup {
+    let (truth, model) = (&outcome.truth.whole.impacts, &outcome.model.histories.whole);
     let milli = |value: f64| column(value * 1e3);
-    let found = |it: &Match| ["no", "yes"][usize::from(it.detected.is_some())];
-    let off = |it: &Row, k: usize| or_dash(it.errors.map(|it| it[k]), error);
-    let pulse = |it: &Row, of: fn(Pulse) -> f64| or_dash(it.pulse.map(of), column);
-    let table = table("Impacts", rows)
-        .number("Index", |it| it.index)
-        .number("Time\nms", |it| ms(it.truth.state.time))
-        .number("Normal speed\nmm/s", |it| milli(it.truth.normal_speed))
-        .number("Impulse\nmN\u{a0}s", |it| milli(it.truth.normal_impulse))
-        .words("Detected", |it| found(it.found))
-        .number("Latency\nms", |it| or_dash(it.found.latency_s, ms))
-        .number("Onset error\nms", |it| or_dash(it.found.onset_error_s, ms))
-        .number("Model: time error\ns", |it| off(it, 0))
-        .number("Model: speed error\nrelative", |it| off(it, 1));
-    if !forces {
+    let seen = |it: &Match| ["no", "yes"][usize::from(it.detected.is_some())];
+    let off = |k: usize, which: usize| or_dash(model_errors(outcome, k).map(|it| it[which]), error);
+    let pulse = |k: usize, of: fn(Pulse) -> f64| {
+        or_dash(model.impacts.get(k).and_then(|it| it.pulse).map(of), column)
+    };
+    let rows: Vec<usize> = (0..found.len()).collect();
+    let table = table("Impacts", &rows)
+        .number("Index", |k| *k)
+        .number("Time\nms", |k| ms(truth[*k].state.time))
+        .number("Normal speed\nmm/s", |k| milli(truth[*k].normal_speed))
+        .number("Impulse\nmN\u{a0}s", |k| milli(truth[*k].normal_impulse))
+        .words("Detected", |k| seen(found[*k]))
+        .number("Latency\nms", |k| or_dash(found[*k].latency_s, ms))
+        .number("Onset error\nms", |k| or_dash(found[*k].onset_error_s, ms))
+        .number("Model: time error\ns", |k| off(*k, 0))
+        .number("Model: speed error\nrelative", |k| off(*k, 1));
+    if !model.has_forces() {
         return table.draw();
     }
     table
-        .number("Peak force\nN", |it| pulse(it, |it| it.peak_force))
-        .number("Contact\nms", |it| pulse(it, |it| it.duration * 1e3))
+        .number("Peak force\nN", |k| pulse(*k, |it| it.peak_force))
+        .number("Contact\nms", |k| pulse(*k, |it| it.duration * 1e3))
         .draw()
 }

@@ -2,7 +2,7 @@
 
 use super::{By, Comparison, Pair, Tolerance};
 use touchdown_base::paint::Paint;
-use touchdown_base::plain::shown;
+use touchdown_base::plain::{listed, shown};
 
 /// Events that are listed.
 const LISTED: usize = 200;
@@ -31,12 +31,8 @@ pub fn table(comparison: &Comparison, paint: Paint) -> String {
         "event", "a at s", "b at s", "b - a ms", "a mm/s", "b mm/s", "b - a %"
     );
     text += &(paint.bold(&head) + "\n");
-    for pair in comparison.events.iter().take(LISTED) {
-        text += &line(pair, paint);
-    }
-    if let more @ 1.. = comparison.events.len().saturating_sub(LISTED) {
-        text += &format!("... {more} more events, with --json\n");
-    }
+    let what = "events, with --json";
+    text += &listed(&comparison.events, LISTED, what, |it| line(it, paint));
     let [one, other] = comparison.regimes.map(|it| it.map_or("none", <&str>::from));
     let not = if one == other { "" } else { "not " };
     text += &format!("\nregime: a {one}, b {other}: {not}the same\n");
