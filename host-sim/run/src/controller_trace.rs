@@ -169,11 +169,7 @@ impl ControllerTrace {
     /// With the times of the samples.
     pub fn told(&self, timebase: Timebase) -> Controller {
         let time = |sample: u64| timebase.time(sample as f64);
-        let outputs = self.outputs.iter();
-        let outputs = outputs.map(|it| OutputsFrom::new(it, time(it.sample)));
-        let alarms = self.alarms.iter();
-        let alarms = alarms.map(|it| AlarmAt::new(it, time(it.sample)));
-        let orders = self.orders.iter().map(|it| {
+        let order = |it: &Ordered| {
             let why = refused_why(it.refused);
             OrderAt {
                 time_s: time(it.sample.wrapping_add(1)),
@@ -181,15 +177,17 @@ impl ControllerTrace {
                 done: why.is_none(),
                 why,
             }
-        });
-        let zones = ["a", "b", "c", "d"].into_iter().zip(self.zone_parts());
-        let state = &self.state;
+        };
+        let (outputs, alarms, state) = (self.outputs.iter(), self.alarms.iter(), &self.state);
         Controller {
-            outputs: outputs.collect(),
+            outputs: (outputs.map(|it| OutputsFrom::new(it, time(it.sample)))).collect(),
             touches: state.touches,
-            alarms: alarms.collect(),
-            orders: orders.collect(),
-            zones: zones.collect(),
+            alarms: (alarms.map(|it| AlarmAt::new(it, time(it.sample)))).collect(),
+            orders: self.orders.iter().map(order).collect(),
+            zones: ["a", "b", "c", "d"]
+                .into_iter()
+                .zip(self.zone_parts())
+                .collect(),
             log: Log {
                 checksum: CRC.checksum(&self.flash),
                 dump: Dump::of(&self.flash),

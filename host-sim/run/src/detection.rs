@@ -51,7 +51,6 @@ pub fn take(events: &mut Vec<DetectedEvent>, notice: &Notice, timebase: Timebase
 /// A touch, as far as it is told; how fast it came the detector may say.
 pub fn touch(touch: &Touch, timebase: Timebase) -> TouchEvent {
     TouchEvent {
-        event: "touch",
         onset_s: timebase.time(touch.onset as f64),
         declared_s: timebase.time(touch.declared as f64),
         end_s: touch.end.map(|end| timebase.time(end as f64)),

@@ -94,7 +94,11 @@ fn sensed<W: Write>(
         progress.at(number + 1);
         let time = (number as f64 - levitated as f64) / rate;
         let state = mover(time)?;
-        let mut sample = sensors.read(&mut chain, &motion(scene, &state, time < 0.0));
+        let seen = Motion {
+            bearing: bearing(scene, state.moving),
+            ..state.motion(time < 0.0)
+        };
+        let mut sample = sensors.read(&mut chain, &seen);
         faults.inject(&mut sample, time);
         let sensed = sensing.planes(&sample)[0].map(|plane| plane.map(f64::from));
         analyser.take(time, sensed);
@@ -138,13 +142,6 @@ fn columns(sensors: &SensorsConfig) -> Columns {
         speed: sensors.speed,
         levitated: sensors.levitation_signal,
         edges: marks.map_or([false; TACHOMETERS], |it| it.map(|marks| marks.is_some())),
-    }
-}
-
-fn motion(scene: &Scene, state: &TrueState, levitated: bool) -> Motion {
-    Motion {
-        bearing: bearing(scene, state.moving),
-        ..state.motion(levitated)
     }
 }
 

@@ -67,18 +67,15 @@ impl Instructions {
 }
 
 fn mean(table: &str, model: &Model, class: &str) -> Option<f64> {
-    let key = [
+    let names: [&str; 4] = [
         model.rung.into(),
         model.scheme.into(),
         model.precision.into(),
         model.math.into(),
-        class,
     ];
-    table.lines().find_map(|line| {
-        let fields: Vec<&str> = line.split(',').collect();
-        let (names, numbers) = fields.split_at_checked(key.len())?;
-        (names == key).then(|| numbers.first()?.parse().ok())?
-    })
+    let start = format!("{},{class},", names.join(","));
+    let numbers = table.lines().find_map(|line| line.strip_prefix(&start))?;
+    numbers.split(',').next()?.parse().ok()
 }
 
 impl Steps {

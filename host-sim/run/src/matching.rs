@@ -6,6 +6,7 @@
 //! is the first event of that kind declared in it.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use crate::outcome::{DetectedEvent, Detection};
 use touchdown_base::history::{History, Phase, PhaseKind, Regime};
@@ -146,21 +147,25 @@ fn pair(onsets: &[f64], detected: &[DetectedEvent], kind: EventKind) -> Vec<Opti
         _ => CHANGE_WINDOW,
     };
     let mut near = Vec::new();
-    for (index, event) in detected.iter().enumerate() {
-        if event.event != kind {
-            continue;
-        }
-        let first = onsets.partition_point(|&onset| onset < event.onset_s - window);
-        for (number, &onset) in onsets.iter().enumerate().skip(first) {
-            if onset > event.onset_s + window {
-                break;
-            }
+    for (index, event) in detected
+        .iter()
+        .enumerate()
+        .filter(|(_, it)| it.event == kind)
+    {
+        for number in within(onsets, event.onset_s, window) {
+            let onset = onsets[number];
             if kind != EventKind::FreeFall || event.declared_s >= onset {
                 near.push(((event.onset_s - onset).abs(), number, index));
             }
         }
     }
     nearest_pairs(near, onsets.len(), detected.len()).0
+}
+
+/// Those of `times`, which rise, that are no farther than `reach` from `time`, s.
+pub(crate) fn within(times: &[f64], time: f64, reach: f64) -> Range<usize> {
+    let first = times.partition_point(|it| *it < time - reach);
+    first..times.partition_point(|it| *it <= time + reach)
 }
 
 /// One to one, the nearest first: `near` has a distance, and which of `these` and of `those` are so far apart. For each of

@@ -41,11 +41,10 @@ pub struct DetectedEvent {
     pub fault: Option<ChannelFault>,
 }
 
-/// The rotor was at the wall, as the guard told.
+/// The rotor was at the wall, as the guard told; as `event` it writes `touch`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "event", rename = "touch")]
 pub struct TouchEvent {
-    /// `touch`.
-    pub event: &'static str,
     /// First sample at the wall, s.
     pub onset_s: f64,
     /// Time stamp of the sample whose tick told it, s.

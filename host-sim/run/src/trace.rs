@@ -26,21 +26,22 @@ struct Thinned {
 
 impl Thinned {
     fn push(&mut self, point: TracePoint, most: usize) {
-        let stride = |halvings: u32| 1_u64 << halvings;
-        if self.seen.is_multiple_of(stride(self.halvings)) {
-            if self.points.len() >= most {
-                let mut number = 0;
-                self.points.retain(|_| {
-                    number += 1;
-                    number % 2 == 1
-                });
-                self.halvings += 1;
-            }
-            if self.seen.is_multiple_of(stride(self.halvings)) {
-                self.points.push(point);
-            }
+        if self.is_kept() && self.points.len() >= most {
+            let mut keep = false;
+            self.points.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.halvings += 1;
+        }
+        if self.is_kept() {
+            self.points.push(point);
         }
         self.seen += 1;
+    }
+
+    fn is_kept(&self) -> bool {
+        self.seen.is_multiple_of(1 << self.halvings)
     }
 }
 

@@ -11,7 +11,7 @@ use touchdown_core::event::EventKind;
 pub use align::{Aligned, By};
 pub use table::table;
 
-use crate::matching::nearest_pairs;
+use crate::matching::{nearest_pairs, within};
 use crate::outcome::{DetectedEvent, Severity};
 use crate::replay::{self, Excerpt, Replay};
 use crate::target::Target;
@@ -134,16 +134,13 @@ fn pairs(told: &[Vec<&DetectedEvent>; 2], shift: f64, tolerance: Tolerance) -> V
     let reach = SAME.max(2.0 * tolerance.time_s);
     let mut in_time: Vec<usize> = (0..b.len()).collect();
     in_time.sort_by(|i, j| b[*i].onset_s.total_cmp(&b[*j].onset_s));
+    let times: Vec<f64> = in_time.iter().map(|j| b[*j].onset_s - shift).collect();
     let mut near = Vec::new();
     for (i, one) in a.iter().enumerate() {
-        let from = in_time.partition_point(|j| b[*j].onset_s - shift < one.onset_s - reach);
-        for &j in &in_time[from..] {
-            let difference = b[j].onset_s - shift - one.onset_s;
-            if difference > reach {
-                break;
-            }
-            if b[j].event == one.event && b[j].fault == one.fault {
-                near.push((difference.abs(), i, j));
+        for k in within(&times, one.onset_s, reach) {
+            let (j, other) = (in_time[k], b[in_time[k]]);
+            if other.event == one.event && other.fault == one.fault {
+                near.push(((times[k] - one.onset_s).abs(), i, j));
             }
         }
     }

@@ -114,12 +114,13 @@ impl Emulator {
         Ok((MonitorOutput { log, ..output }, conduct))
     }
 
-    fn decode_log(&self, elf: &[u8], bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
+    /// What it printed, by the table in its file.
+    fn decode_log(&self, bytes: &[u8]) -> Result<Vec<String>, EmulatorError> {
         let reject = |reason: String| EmulatorError::NotAnImage {
             image: self.image.clone(),
             reason,
         };
-        let table = Table::parse(elf)
+        let table = Table::parse(&read(&self.image)?)
             .map_err(|e| reject(e.to_string()))?
             .ok_or_else(|| reject("it has no log table".into()))?;
         let mut decoder = table.new_stream_decoder();

@@ -170,9 +170,7 @@ impl Session {
     }
 
     fn log(&self) -> Result<Vec<String>, EmulatorError> {
-        let elf = read(&self.emulator.image)?;
-        self.emulator
-            .decode_log(&elf, &read(&self.folder.join("out"))?)
+        (self.emulator).decode_log(&read(&self.folder.join("out"))?)
     }
 
     fn stop(&mut self) {

@@ -132,10 +132,12 @@ pub(super) fn sensors(scene: &Scene) -> Vec<Row> {
         false => "none",
     };
     let not_modelled = || "not modelled".to_owned();
+    let yes = |wired: bool| ["no", "yes"][usize::from(wired)].to_owned();
+    let range = (config.range * 1e6 * 1e6).round() / 1e6;
     vec![
         ("planes", config.planes.to_string()),
         ("sample rate", format!("{} Hz", scene.run.sample_rate)),
-        ("range", format!("+-{} um", short(config.range * 1e6))),
+        ("range", format!("+-{range} um")),
         ("one count", count),
         (
             "noise of a channel",
@@ -147,12 +149,4 @@ pub(super) fn sensors(scene: &Scene) -> Vec<Row> {
         ("levitation signal", yes(config.levitation_signal)),
         ("runout, gain, offset, curve", distortion.to_owned()),
     ]
-}
-
-fn short(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
-}
-
-fn yes(wired: bool) -> String {
-    if wired { "yes" } else { "no" }.to_owned()
 }

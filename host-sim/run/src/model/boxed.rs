@@ -19,8 +19,7 @@ impl<R: Precision> Boxed<R> {
         Self(Rc::new(
             move |start: &Start<R>, spin, on_event: OnEvent<R>| {
                 let state = model.start(start, spin, on_event)?;
-                let model = model.clone();
-                Ok(BoxedState(Box::new(Begun { model, state })))
+                Ok(BoxedState(Box::new((model.clone(), state))))
             },
         ))
     }
@@ -34,27 +33,21 @@ trait Dropping<R> {
     fn copy(&self) -> Box<dyn Dropping<R>>;
 }
 
-struct Begun<M, S> {
-    model: Rc<M>,
-    state: S,
-}
-
-impl<R: Precision, M: Stepper<R> + 'static> Dropping<R> for Begun<M, M::State> {
+impl<R: Precision, M: Stepper<R> + 'static> Dropping<R> for (Rc<M>, M::State) {
     fn step(&mut self, on_event: OnEvent<R>) {
-        self.model.step(&mut self.state, on_event);
+        self.0.step(&mut self.1, on_event);
     }
 
     fn part_step(&mut self, fraction: R, on_event: OnEvent<R>) {
-        self.model.part_step(&mut self.state, fraction, on_event);
+        self.0.part_step(&mut self.1, fraction, on_event);
     }
 
     fn kinematics(&self) -> Kinematics<R> {
-        self.model.kinematics(&self.state)
+        self.0.kinematics(&self.1)
     }
 
     fn copy(&self) -> Box<dyn Dropping<R>> {
-        let (model, state) = (self.model.clone(), self.state.clone());
-        Box::new(Self { model, state })
+        Box::new(self.clone())
     }
 }
 

@@ -35,11 +35,9 @@ trait AnyWhole<R> {
 }
 
 /// With its units.
-struct Built<R, const N: usize, const Q: usize>(Whole<R, N, Q>, Scales<f64>);
-
-impl<R: Precision, const N: usize, const Q: usize> AnyWhole<R> for Built<R, N, Q> {
+impl<R: Precision, const N: usize, const Q: usize> AnyWhole<R> for (Whole<R, N, Q>, Scales<f64>) {
     fn subject(self: Box<Self>, scene: &Scene) -> Subject<R, Boxed<R>> {
-        let Self(whole, scales) = *self;
+        let (whole, scales) = *self;
         Subject {
             start: Start::Free {
                 position: whole.start.position,
@@ -57,7 +55,7 @@ impl<R: Precision, const N: usize, const Q: usize> AnyWhole<R> for Built<R, N, Q
         scene: &'a Scene,
         on_step: Option<OnStep<'a>>,
     ) -> Result<Box<dyn FollowedDrop + 'a>, ConfigError> {
-        let Self(whole, scales) = *self;
+        let (whole, scales) = *self;
         Ok(Box::new(MachineDrop::new(scene, on_step, whole, scales)?))
     }
 }
@@ -91,7 +89,7 @@ fn built<R: Precision, const N: usize, const Q: usize>(
         start: placement(scene, &exact).rounded::<R>(),
         model: Coupled::<R, N, Q>::try_new(&config)?,
     };
-    Ok(Box::new(Built(whole, *exact.scales())))
+    Ok(Box::new((whole, *exact.scales())))
 }
 
 fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<N>, ConfigError> {

@@ -43,7 +43,6 @@ pub(super) struct MachineDrop<'a, R, const N: usize, const Q: usize> {
     state: CoupledState<R, N, Q>,
     done: u64,
     told: Told<N>,
-    peaks: [[f64; 2]; N],
     /// Turned by the inner rings up to the last step, rad.
     turned: [f64; N],
     begun: CoupledEnergy<f64>,
@@ -56,8 +55,8 @@ struct Told<const N: usize> {
     whole: Recorder,
     rings: Vec<Recorder>,
     merge: Merge,
-    /// Farthest of the axis at an impact, rho0.
-    struck: [f64; N],
+    /// Farthest of the axis in each ring from the bearing's centre, and of the ring from its rest place, rho0.
+    peaks: [[f64; 2]; N],
 }
 
 impl<const N: usize> Told<N> {
@@ -73,13 +72,12 @@ impl<const N: usize> Told<N> {
             whole: recorder.clone(),
             rings: vec![recorder; N],
             merge: Merge::new(N),
-            struck: [0.0; N],
+            peaks: [[0.0; 2]; N],
         }
     }
 
     fn take<R: Precision>(&mut self, it: &RingEvent<R>) {
-        let [x, y] = it.event.after.position.map(R::to_f64);
-        self.struck[it.ring] = f64::max(self.struck[it.ring], x.hypot(y));
+        reaches(&mut self.peaks[it.ring][0], it.event.after.position);
         let happening = self.seen[it.ring].happening(&it.event);
         self.rings[it.ring].take(happening);
         if let Some(happening) = self.merge.take(it.ring, happening) {
@@ -109,7 +107,6 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
             state,
             done: 0,
             told,
-            peaks: [[0.0; 2]; N],
             turned: [0.0; N],
             given_up: None,
         })
@@ -169,25 +166,18 @@ impl<'a, R: Precision, const N: usize, const Q: usize> MachineDrop<'a, R, N, Q> 
         }
     }
 
-    /// Keeps the farthest of the axis in each ring from the bearing's centre, and of the ring from its rest place, rho0.
     fn farthest(&mut self) {
         let (model, state) = (&self.of.model, &self.state);
-        for (ring, peaks) in self.peaks.iter_mut().enumerate() {
-            let places = [
-                model.kinematics_at(state, ring).position,
-                model.ring(state, ring).position,
-            ];
-            for (peak, place) in peaks.iter_mut().zip(places) {
-                let [x, y] = place.map(R::to_f64);
-                *peak = f64::max(*peak, x.hypot(y));
-            }
+        for (ring, [axis, own]) in self.told.peaks.iter_mut().enumerate() {
+            reaches(axis, model.kinematics_at(state, ring).position);
+            reaches(own, model.ring(state, ring).position);
         }
     }
 
     /// `unit` in J.
     fn ring_end(&self, ring: usize, unit: f64) -> RingEnd {
         let (model, scales) = (&self.of.model, &self.seen.scales);
-        let [radius, excursion] = self.peaks[ring];
+        let [radius, excursion] = self.told.peaks[ring];
         let motion = model.ring(&self.state, ring);
         let [x_m, y_m] = self.seen.metres(motion.position);
         let [vx_m_s, vy_m_s] = motion.velocity.map(|v| v.to_f64() * scales.speed);
@@ -278,9 +268,6 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
             model.part_step(&mut self.state, part, &mut |it| told.take(&it));
             self.farthest();
         }
-        for ([radius, _], struck) in self.peaks.iter_mut().zip(self.told.struck) {
-            *radius = f64::max(*radius, struck);
-        }
         let (model, state, seen) = (&self.of.model, &self.state, &self.seen);
         let duration = self.given_up.unwrap_or(scene.run.duration);
         let end = seen.state(&self.of.kinematics(state), duration);
@@ -308,6 +295,12 @@ impl<R: Precision, const N: usize, const Q: usize> FollowedDrop for MachineDrop<
         }
         run
     }
+}
+
+/// Keeps the distance of `place` in `peak` where it is greater.
+fn reaches<R: Precision>(peak: &mut f64, place: [R; 2]) {
+    let [x, y] = place.map(R::to_f64);
+    *peak = f64::max(*peak, x.hypot(y));
 }
 
 /// Work of the run's own steps before it is given up: the samples' share is taken off.

@@ -20,51 +20,18 @@ pub fn follow(scene: &Scene) -> Result<Box<dyn FollowedDrop + '_>, ConfigError> 
 
 /// Runs the scene's model from the release to the end.
 pub fn run(scene: &Scene) -> Result<ModelRun, ConfigError> {
-    run_out(scene, false)
+    Ok(follow(scene)?.finish())
 }
 
 /// The rotor's part of [`run`].
 pub fn simulate(scene: &Scene) -> Result<History, ConfigError> {
-    run(scene).map(|run| run.histories.whole)
+    Ok(run(scene)?.histories.whole)
 }
 
 /// Likewise, but it may end where the regime can no longer change. Only the rigid rung does: a whirl that
 /// has gone round once and that nothing can end.
 pub fn simulate_to_verdict(scene: &Scene) -> Result<History, ConfigError> {
-    run_out(scene, true).map(|run| run.histories.whole)
-}
-
-fn run_out(scene: &Scene, to_verdict: bool) -> Result<ModelRun, ConfigError> {
-    match scene.model.rung {
-        Fidelity::Rigid => with_model(scene, RunOut { scene, to_verdict }),
-        _ => Ok(follow(scene)?.finish()),
-    }
-}
-
-/// Goes past steps in which nothing changes, where the model can.
-struct RunOut<'a> {
-    scene: &'a Scene,
-    to_verdict: bool,
-}
-
-impl Use for RunOut<'_> {
-    type Output = ModelRun;
-
-    fn with<R: Precision, M: Stepper<R> + Clone + 'static>(
-        self,
-        subject: &Subject<R, M>,
-    ) -> Result<ModelRun, ConfigError> {
-        let mut drop = PlaneDrop::new(self.scene, subject)?;
-        let (model, state) = (&subject.model, &mut drop.state);
-        let take = |it| drop.told.take(drop.seen.happening(&it));
-        let (steps, fraction) = steps_of_run(self.scene.run.duration / self.scene.model.step);
-        if self.to_verdict {
-            model.run_to_verdict(state, steps, R::lit(fraction), take);
-        } else {
-            model.run(state, steps, R::lit(fraction), take);
-        }
-        Ok(drop.end())
-    }
+    Ok(follow(scene)?.finish_at_verdict().histories.whole)
 }
 
 struct PlaneRelease<'a>(&'a Scene);
@@ -106,21 +73,26 @@ impl<'a, R: Precision, M: Stepper<R> + Clone> PlaneDrop<'a, R, M> {
         })
     }
 
-    fn to(&mut self, time: f64) -> f64 {
-        let (steps, fraction) = steps_of_run(time / self.scene.model.step);
-        let (seen, told) = (&self.seen, &mut self.told);
-        while self.done < steps {
-            let take = |it| told.take(seen.happening(&it));
-            self.model.step(&mut self.state, take);
-            self.done += 1;
+    /// Goes past steps in which nothing changes, where the model can.
+    fn end(self, to_verdict: bool) -> ModelRun {
+        let Self {
+            scene,
+            seen,
+            model,
+            mut state,
+            mut told,
+            done,
+        } = self;
+        let (steps, fraction) = steps_of_run(scene.run.duration / scene.model.step);
+        let (left, fraction) = (steps.saturating_sub(done), R::lit(fraction));
+        let take = |it| told.take(seen.happening(&it));
+        if to_verdict {
+            model.run_to_verdict(&mut state, left, fraction, take);
+        } else {
+            model.run(&mut state, left, fraction, take);
         }
-        fraction
-    }
-
-    fn end(self) -> ModelRun {
-        let now = self.model.kinematics(&self.state);
-        let last = self.seen.state(&now, self.scene.run.duration);
-        ModelRun::of_rotor(self.told.finish(last, self.seen.still()))
+        let last = seen.state(&model.kinematics(&state), scene.run.duration);
+        ModelRun::of_rotor(told.finish(last, seen.still()))
     }
 }
 
@@ -129,7 +101,12 @@ impl<R: Precision, M: Stepper<R> + Clone> FollowedDrop for PlaneDrop<'_, R, M> {
         if time < 0.0 {
             return Some(held(self.scene, time));
         }
-        let fraction = self.to(time);
+        let (steps, fraction) = steps_of_run(time / self.scene.model.step);
+        while self.done < steps {
+            let take = |it| self.told.take(self.seen.happening(&it));
+            self.model.step(&mut self.state, take);
+            self.done += 1;
+        }
         let mut state = self.state.clone();
         if fraction > 0.0 {
             self.model.part_step(&mut state, R::lit(fraction), |_| ());
@@ -147,13 +124,11 @@ impl<R: Precision, M: Stepper<R> + Clone> FollowedDrop for PlaneDrop<'_, R, M> {
         })
     }
 
-    fn finish(mut self: Box<Self>) -> ModelRun {
-        let fraction = self.to(self.scene.run.duration);
-        if fraction > 0.0 {
-            let (seen, told) = (&self.seen, &mut self.told);
-            let take = |it| told.take(seen.happening(&it));
-            (self.model).part_step(&mut self.state, R::lit(fraction), take);
-        }
-        self.end()
+    fn finish(self: Box<Self>) -> ModelRun {
+        self.end(false)
+    }
+
+    fn finish_at_verdict(self: Box<Self>) -> ModelRun {
+        self.end(true)
     }
 }

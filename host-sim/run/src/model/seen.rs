@@ -23,6 +23,11 @@ pub trait FollowedDrop {
 
     /// Goes on to the end of the run, or to where it is given up.
     fn finish(self: Box<Self>) -> ModelRun;
+
+    /// The same, but it may end where the regime can no longer change.
+    fn finish_at_verdict(self: Box<Self>) -> ModelRun {
+        self.finish()
+    }
 }
 
 /// What a model made of a drop.

@@ -72,13 +72,10 @@ pub fn first_drop(
     let first = index(event.onset_s - AROUND[0]);
     let last = index(event.onset_s + AROUND[1]);
     let count = (last + 1).saturating_sub(first).min(MOST);
-    let mut positions = Vec::new();
-    for row in recording.skip(first).take(count) {
-        positions.push(row?.positions);
-    }
+    let rows = recording.skip(first).take(count);
     Ok(Some(Excerpt {
         start: start + first as f64 / rate,
         rate,
-        positions,
+        positions: (rows.map(|row| Ok(row?.positions))).collect::<Result<_, Failure>>()?,
     }))
 }
