@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::Measurement;
 use super::calibration::Calibration;
 use super::pulse::{Contact, Pulse};
-use super::recording::{Axis as Along, Recording};
+use super::recording::Recording;
 use super::spectrum::Transform;
 use touchdown_base::plain::shown;
 use touchdown_chart::plot::{Axis, Chart, key};
@@ -16,6 +16,8 @@ use touchdown_chart::text::{ms, or_dash, si, significant};
 const HEIGHT: f64 = 280.0;
 /// Contacts that are drawn one by one, strongest first.
 const DRAWN: usize = 2;
+/// Style of each axis' curve.
+const CLASSES: [&str; 2] = ["motion", "impact"];
 /// Lowest frequency of the drawing, Hz.
 const LOWEST: f64 = 10.0;
 
@@ -38,10 +40,8 @@ pub fn text(recording: &str, measurement: &Measurement) -> String {
     text += "   time      peak  contact  impulse  direction\n";
     text += "     ms         N       us      N s   from the bottom\n";
     for pulse in measurement.pulses() {
-        let contact = pulse
-            .contact_time_s
-            .map(|time| format!("{:.1}", 1e6 * time));
-        let contact = contact.unwrap_or_else(|| "-".to_owned());
+        let contact = pulse.contact_time_s;
+        let contact = contact.map_or("-".to_owned(), |time| format!("{:.1}", 1e6 * time));
         text += &format!(
             "{:>7.3}  {:>8.1}  {contact:>7}  {:>7.4}  {:>+9.2}\n",
             1e3 * pulse.time_s,
@@ -128,14 +128,13 @@ fn whole(recording: &Recording, measurement: &Measurement) -> Markup {
         y: &force_axis(values().fold(0.0, f64::min), values().fold(0.0, f64::max)),
         height: HEIGHT,
     };
-    let classes = [("motion", "to the right"), ("impact", "up")];
     let drawn = html! {
-        @for (axis, (class, _)) in axes.iter().zip(classes) {
+        @for (axis, class) in axes.iter().zip(CLASSES) {
             (chart.curve(class, axis.iter().enumerate().map(|(k, force)| (time(k), *force))))
         }
     };
     html! {
-        ul.legend { @for (class, name) in &classes[..axes.len()] { (key(class, name)) } }
+        ul.legend { @for ((_, class), name) in axes.iter().zip(CLASSES).zip(["to the right", "up"]) { (key(class, name)) } }
         (chart.plain(&drawn))
     }
 }
@@ -166,10 +165,7 @@ fn device(measurement: &Measurement) -> Markup {
         let response = calibration.response(&transform);
         let sizes = response.h.iter().enumerate();
         let points = sizes.map(|(k, h)| (k as f64 * step, h.norm()));
-        let class = match calibration.axis {
-            Along::X => "motion",
-            Along::Y => "impact",
-        };
+        let class = CLASSES[calibration.axis as usize];
         (class, points.filter(|it| it.0 >= LOWEST).collect())
     };
     let curves: Vec<(_, Vec<_>)> = measurement.calibrations.iter().map(curve).collect();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::recording::{Axis, Hit, Hits, Recording};
+use super::recording::{Axis, COLUMNS, Hit, Hits, Recording};
 use touchdown_base::input_error::InputError;
 use touchdown_base::plain::Number;
 use touchdown_files::stream::{Clock, Stamp};
@@ -17,16 +17,14 @@ const LARGEST: u64 = 256 << 20;
 
 /// Reads a recording, header `time_s,ax_m_s2[,ay_m_s2]`.
 pub fn recording(path: &Path) -> Result<Recording, InputError> {
-    let table = Table::read(path, "time_s,ax_m_s2[,ay_m_s2]", |names| {
-        names.strip_suffix(&["ay_m_s2"]).unwrap_or(names) == ["time_s", "ax_m_s2"]
-    })?;
-    let rows = &table.rows;
-    let (start, rate) = table.clock(rows)?;
-    let axes = 1..table.names.len();
+    let headers = ["time_s,ax_m_s2", "time_s,ax_m_s2,ay_m_s2"];
+    let table = Table::read(path, "time_s,ax_m_s2[,ay_m_s2]", &headers)?;
+    let (start, rate) = table.clock(&table.rows)?;
+    let axes = 1..table.rows[0].values.len();
     Ok(Recording {
         rate,
         start,
-        acceleration: axes.map(|column| columns(rows, column)).collect(),
+        acceleration: axes.map(|it| column(&table.rows, it)).collect(),
         file: table.file,
     })
 }
@@ -34,18 +32,15 @@ pub fn recording(path: &Path) -> Result<Recording, InputError> {
 /// Reads known hits, header `[hit,]time_s,force_n,ax_m_s2`, or `ay_m_s2` for the other axis. A new
 /// value of `hit` begins the next one, with a time of its own.
 pub fn calibration(path: &Path) -> Result<Hits, InputError> {
-    let header = "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)";
-    let table = Table::read(path, header, |names| {
-        let names = names.strip_prefix(&["hit"]).unwrap_or(names);
-        matches!(names, ["time_s", "force_n", "ax_m_s2" | "ay_m_s2"])
-    })?;
-    let axis = match table.names.last().map(String::as_str) {
-        Some("ay_m_s2") => Axis::Y,
-        _ => Axis::X,
-    };
-    let numbered = table.names[0] == "hit";
-    let first = usize::from(numbered);
-    let same = |a: &Row, b: &Row| !numbered || a.values[0] == b.values[0];
+    let headers = [
+        "time_s,force_n,ax_m_s2",
+        "time_s,force_n,ay_m_s2",
+        "hit,time_s,force_n,ax_m_s2",
+        "hit,time_s,force_n,ay_m_s2",
+    ];
+    let table = Table::read(path, "[hit,]time_s,force_n,ax_m_s2 (or ay_m_s2)", &headers)?;
+    let first = usize::from(table.header.starts_with("hit"));
+    let same = |a: &Row, b: &Row| a.values[..first] == b.values[..first];
     let mut rate: Option<f64> = None;
     let mut hits = Vec::new();
     for rows in table.rows.chunk_by(same) {
@@ -60,13 +55,17 @@ pub fn calibration(path: &Path) -> Result<Hits, InputError> {
         }
         hits.push(Hit {
             line: rows[0].line,
-            force: columns(rows, first + 1),
-            acceleration: columns(rows, first + 2),
+            force: column(rows, first + 1),
+            acceleration: column(rows, first + 2),
         });
     }
     Ok(Hits {
+        axis: if table.header.ends_with(COLUMNS[1]) {
+            Axis::Y
+        } else {
+            Axis::X
+        },
         file: table.file,
-        axis,
         rate: rate.unwrap_or_default(),
         hits,
     })
@@ -83,52 +82,49 @@ pub fn same_rate(recording: &Recording, hits: &Hits) -> Result<(), InputError> {
     Err(InputError::at_line(&recording.file, 3, rule))
 }
 
-fn columns(rows: &[Row], column: usize) -> Vec<f64> {
+fn column(rows: &[Row], column: usize) -> Vec<f64> {
     rows.iter().map(|row| row.values[column]).collect()
 }
 
 struct Table {
     file: String,
-    names: Vec<String>,
+    header: String,
+    /// One or more.
     rows: Vec<Row>,
 }
 
 struct Row {
     line: u64,
     stamp: Stamp,
+    /// All fields, the time included.
     values: Vec<f64>,
 }
 
 impl Table {
-    fn read(
-        path: &Path,
-        shape: &str,
-        allowed: impl Fn(&[&str]) -> bool,
-    ) -> Result<Self, InputError> {
+    /// Of one of these `headers`, which an error tells as `shape`.
+    fn read(path: &Path, shape: &str, headers: &[&str]) -> Result<Self, InputError> {
         let file = path.display().to_string();
+        let fail = |line, rule: String| InputError::at_line(&file, line, rule);
         let text = InputError::read(path, LARGEST)?;
         let mut lines = text.lines().zip(1..);
-        let (header, _) = lines.next().unwrap_or(("", 1));
-        let names: Vec<&str> = header.split(',').map(str::trim).collect();
-        if !allowed(&names) {
-            let rule = format!("the header must be {shape}, is {header:?}");
-            return Err(InputError::at_line(&file, 1, rule));
+        let (first, _) = lines.next().unwrap_or(("", 1));
+        let names: Vec<&str> = first.split(',').map(str::trim).collect();
+        let header = names.join(",");
+        if !headers.contains(&header.as_str()) {
+            return Err(fail(1, format!("the header must be {shape}, is {first:?}")));
         }
-        let mut rows = Vec::new();
-        for (text, line) in lines.filter(|(text, _)| !text.trim().is_empty()) {
-            let row = Row::parse(text, line, &names);
-            rows.push(row.map_err(|rule| InputError::at_line(&file, line, rule))?);
-        }
-        let fail = |line, rule| Err(InputError::at_line(&file, line, rule));
+        let lines = lines.filter(|(text, _)| !text.trim().is_empty());
+        let rows = lines
+            .map(|(text, line)| Row::parse(text, line, &names).map_err(|rule| fail(line, rule)));
+        let rows = rows.collect::<Result<Vec<_>, _>>()?;
         if rows.is_empty() {
-            return fail(1, "there are no rows after the header");
+            return Err(fail(1, "there are no rows after the header".to_owned()));
         }
         if !text.ends_with('\n') {
             let rule = "the last line is cut off: it does not end with a newline";
-            return fail(text.lines().count() as u64, rule);
+            return Err(fail(text.lines().count() as u64, rule.to_owned()));
         }
-        let names = names.into_iter().map(str::to_owned).collect();
-        Ok(Self { file, names, rows })
+        Ok(Self { file, header, rows })
     }
 
     /// Time of the first of `rows`, of which there is one at least, s, and their rate, Hz.
@@ -160,21 +156,19 @@ impl Row {
         if there != needed {
             return Err(format!("a row needs {needed} fields, this one has {there}"));
         }
-        let mut stamp = None;
-        let mut values = Vec::with_capacity(fields.len());
-        for (name, field) in names.iter().zip(&fields) {
-            let fail = || format!("{name} must be a finite number, is {field:?}");
-            let value: Option<f64> = field.parse().ok();
-            values.push(value.filter(|it| it.is_finite()).ok_or_else(fail)?);
-            if *name == "time_s" {
-                stamp = Some(Stamp::parse(field).ok_or_else(fail)?);
-            }
-        }
-        let stamp = stamp.ok_or("time_s is missing")?;
+        let broken = |at: usize| {
+            let (name, field) = (names[at], fields[at]);
+            format!("{name} must be a finite number, is {field:?}")
+        };
+        let number = |at: usize| {
+            let number = fields[at].parse().ok().filter(|it: &f64| it.is_finite());
+            number.ok_or_else(|| broken(at))
+        };
+        let time = usize::from(names[0] == "hit");
         Ok(Self {
             line,
-            stamp,
-            values,
+            values: (0..needed).map(number).collect::<Result<_, _>>()?,
+            stamp: Stamp::parse(fields[time]).ok_or_else(|| broken(time))?,
         })
     }
 }

@@ -12,6 +12,9 @@ pub enum Axis {
     Y,
 }
 
+/// The columns of acceleration in files, by axis.
+pub const COLUMNS: [&str; 2] = ["ax_m_s2", "ay_m_s2"];
+
 /// A recording to find forces in.
 #[derive(Clone, Debug)]
 pub struct Recording {

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::recording::{Axis, Hits, Recording};
+use super::recording::{COLUMNS, Hits, Recording};
 
 /// A recording as CSV: microseconds, mm/s^2.
 pub fn recording(recording: &Recording) -> String {
-    let names = &["ax_m_s2", "ay_m_s2"][..recording.acceleration.len()];
+    let names = &COLUMNS[..recording.acceleration.len()];
     let mut text = format!("time_s,{}\n", names.join(","));
     let samples = recording.acceleration.first().map_or(0, Vec::len);
     for k in 0..samples {
@@ -22,10 +22,7 @@ pub fn recording(recording: &Recording) -> String {
 
 /// Hits as CSV, numbered from 1, each with its time from 0: microseconds, mN, mm/s^2.
 pub fn calibration(hits: &Hits) -> String {
-    let name = match hits.axis {
-        Axis::X => "ax_m_s2",
-        Axis::Y => "ay_m_s2",
-    };
+    let name = COLUMNS[hits.axis as usize];
     let mut text = format!("hit,time_s,force_n,{name}\n");
     for (hit, number) in hits.hits.iter().zip(1..) {
         for (k, (force, acceleration)) in hit.force.iter().zip(&hit.acceleration).enumerate() {
