@@ -9,12 +9,6 @@ const HEIGHT: f64 = 150.0;
 const STROKES: usize = 400;
 const CHANNELS: [&str; 4] = ["plane a, x", "plane a, y", "plane b, x", "plane b, y"];
 
-/// Takes the points of a curve, s and m.
-pub type Line<'a> = &'a mut dyn FnMut(f64, f64);
-
-/// A curve: its class, and what hands out its points.
-pub type Curve<'a> = (&'static str, &'a dyn Fn(Line<'_>));
-
 /// What is drawn of a channel.
 pub struct Waveform<'a> {
     /// 0 to 3.
@@ -27,8 +21,8 @@ pub struct Waveform<'a> {
     pub description: &'static str,
     /// m.
     pub clearance: f64,
-    /// Later ones lie over earlier ones.
-    pub curves: &'a [Curve<'a>],
+    /// Class of each curve, and its points, s and m. Later ones lie over earlier ones.
+    pub curves: &'a [(&'static str, Vec<(f64, f64)>)],
     /// Events at the top, and impacts at the bottom, s.
     pub strokes: [&'a [f64]; 2],
 }
@@ -42,11 +36,9 @@ pub fn displacement_axis(name: &str, farthest: f64) -> Axis {
 /// Draws it, with dashed lines at the clearance.
 pub fn waveform(shown: &Waveform<'_>) -> Markup {
     let name = CHANNELS[shown.channel];
-    let mut farthest = shown.clearance;
-    for (_, points) in shown.curves {
-        // A missing value is not farther.
-        points(&mut |_, place| farthest = farthest.max(place.abs()));
-    }
+    let points = shown.curves.iter().flat_map(|(_, points)| points);
+    // A missing value is not farther.
+    let farthest = points.fold(shown.clearance, |most, it| most.max(it.1.abs()));
     let [from, to] = shown.span;
     let x = Axis::new(from, to, shown.time, 6.0);
     let chart = Chart {
@@ -56,14 +48,9 @@ pub fn waveform(shown: &Waveform<'_>) -> Markup {
         y: &displacement_axis(name, farthest),
         height: HEIGHT,
     };
-    let curve = |(class, points): &Curve<'_>| {
-        let mut pen = chart.pen();
-        points(&mut |time, place| pen.line_to(time, place));
-        pen.finish(class)
-    };
     let curves = html! {
         (chart.walls(shown.clearance))
-        @for it in shown.curves { (curve(it)) }
+        @for (class, points) in shown.curves { (chart.curve(class, points.iter().copied())) }
     };
     let strokes = shown.strokes.map(|times| {
         let seen = times.iter().filter(|it| x.shows(**it)).take(STROKES);

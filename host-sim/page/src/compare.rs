@@ -6,7 +6,7 @@ use touchdown_chart::plot::key;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{or_dash, significant};
-use touchdown_chart::waveform::{Line, Waveform, waveform};
+use touchdown_chart::waveform::{Waveform, waveform};
 use touchdown_run::compare::Comparison;
 use touchdown_run::compare::table::verdict;
 use touchdown_run::replay::Excerpt;
@@ -44,8 +44,6 @@ pub fn page(scene: &Scene, comparison: &Comparison) -> String {
 }
 
 fn panel(channel: usize, [a, b]: &[Excerpt; 2], scene: &Scene, shift: f64) -> Markup {
-    let first = |line: Line<'_>| a.draw(channel, 0.0, line);
-    let second = |line: Line<'_>| b.draw(channel, -shift, line);
     waveform(&Waveform {
         channel,
         span: [a.start, a.time(a.positions.len())],
@@ -53,7 +51,10 @@ fn panel(channel: usize, [a, b]: &[Excerpt; 2], scene: &Scene, shift: f64) -> Ma
         description: "Displacement of both recordings against time, the second shifted onto the first; \
                       dashed lines at the clearance.",
         clearance: scene.retainer.clearance,
-        curves: &[("sensed", &second), ("motion", &first)],
+        curves: &[
+            ("sensed", b.points(channel, -shift)),
+            ("motion", a.points(channel, 0.0)),
+        ],
         strokes: [&[], &[]],
     })
 }

@@ -7,7 +7,7 @@ use crate::report::timeline::onsets;
 use touchdown_chart::shell::page as in_style;
 use touchdown_chart::table::table;
 use touchdown_chart::text::{ms, si, significant};
-use touchdown_chart::waveform::{Line, Waveform, waveform};
+use touchdown_chart::waveform::{Waveform, waveform};
 use touchdown_run::replay::{Excerpt, Replay};
 use touchdown_scene::Scene;
 
@@ -34,7 +34,7 @@ pub fn page(name: &str, scene: &Scene, replay: &Replay, drop: Option<&Excerpt>) 
             section {
                 h2 { "First drop" }
                 @let span = [drop.start, drop.time(drop.positions.len())];
-                (panels(span, scene, replay, &|channel, line| drop.draw(channel, 0.0, line)))
+                (panels(span, scene, replay, |it| drop.points(it, 0.0)))
             }
         }
         section {
@@ -68,32 +68,32 @@ fn whole(scene: &Scene, replay: &Replay) -> Markup {
     let envelope = &replay.envelope;
     let stretch = envelope.stride as f64 / replay.rate;
     let end = replay.start + replay.detection.summary.samples as f64 / replay.rate;
-    panels([replay.start, end], scene, replay, &|channel, line| {
-        for (index, bucket) in envelope.buckets().enumerate() {
+    panels([replay.start, end], scene, replay, |channel| {
+        let buckets = envelope.buckets().enumerate();
+        let points = buckets.flat_map(|(index, bucket)| {
             let time = replay.start + (index as f64 + 0.5) * stretch;
-            line(time, bucket[channel][0]);
-            line(time, bucket[channel][1]);
-        }
+            bucket[channel].map(|place| (time, place))
+        });
+        points.collect()
     })
 }
 
-/// A chart for each channel; `draw` hands out its points, s and m.
+/// A chart for each channel, through its `points`, s and m.
 fn panels(
     span: [f64; 2],
     scene: &Scene,
     replay: &Replay,
-    draw: &dyn Fn(usize, Line<'_>),
+    points: impl Fn(usize) -> Vec<(f64, f64)>,
 ) -> Markup {
     let [events, impacts] = [false, true].map(|it| onsets(&replay.detection, it));
     let panel = |channel: usize| {
-        let points = |line: Line<'_>| draw(channel, line);
         waveform(&Waveform {
             channel,
             span,
             time: "time, s",
             description: "Recorded displacement against time, dashed lines at the clearance, strokes at events.",
             clearance: scene.retainer.clearance,
-            curves: &[("motion", &points)],
+            curves: &[("motion", points(channel))],
             strokes: [&events, &impacts],
         })
     };

@@ -43,11 +43,12 @@ impl Excerpt {
         }))
     }
 
-    /// Hands out the points of a channel, s and m, so much later.
-    pub fn draw(&self, channel: usize, later: f64, line: &mut dyn FnMut(f64, f64)) {
-        for (index, positions) in self.positions.iter().enumerate() {
-            line(self.time(index) + later, positions[channel]);
-        }
+    /// The points of a channel, s and m, so much later.
+    pub fn points(&self, channel: usize, later: f64) -> Vec<(f64, f64)> {
+        let samples = self.positions.iter().enumerate();
+        samples
+            .map(|(index, it)| (self.time(index) + later, it[channel]))
+            .collect()
     }
 
     /// Time of sample `index`, s.
