@@ -233,11 +233,8 @@ fn number(text: &str, is_right: impl Fn(f64) -> bool, rule: &str) -> Result<f64,
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
-    number(
-        text,
-        |it| it.is_finite() && it >= 0.0,
-        "a number, 0 or more",
-    )
+    let is_right = |it: f64| it.is_finite() && it >= 0.0;
+    number(text, is_right, "a number, 0 or more")
 }
 
 #[derive(Args, Clone, Debug)]
@@ -487,14 +484,6 @@ pub(super) struct DumpArgs {
     pub json: Option<String>,
 }
 
-#[derive(Args, Clone, Debug)]
-pub(super) struct ChosenArgs {
-    /// A dump of the log's flash, a file of one episode, or a controller's port
-    pub file: String,
-    /// Its number; the newest without
-    pub number: Option<u32>,
-}
-
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum LogCommand {
     /// Each episode with its state, trigger and severity, and the lifetime counters
@@ -504,16 +493,17 @@ pub(super) enum LogCommand {
     #[command(after_help = help!("log_show"))]
     Show {
         #[command(flatten)]
-        chosen: ChosenArgs,
-        /// The same as JSON; `-` is standard output
-        #[arg(long, value_name = "FILE")]
-        json: Option<String>,
+        dump: DumpArgs,
+        /// Its number; the newest without
+        number: Option<u32>,
     },
     /// One episode as a stream that `replay` reads, as COMTRADE or as JSON
     #[command(after_help = help!("log_export"))]
     Export {
-        #[command(flatten)]
-        chosen: ChosenArgs,
+        /// A dump of the log's flash, a file of one episode, or a controller's port
+        file: String,
+        /// Its number; the newest without
+        number: Option<u32>,
         /// What to write
         #[arg(long, value_enum, default_value_t)]
         format: ExportFormat,

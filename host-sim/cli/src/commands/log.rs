@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{ChosenArgs, DumpArgs, ExportFormat, LogCommand};
+use super::args::{DumpArgs, ExportFormat, LogCommand};
 use super::holds;
 use super::order::order;
 use crate::gate::{Gate, Outputs};
@@ -23,22 +23,23 @@ const DAT: &str = "--out (.dat)";
 pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     match command {
         LogCommand::List(args) => all(args).map(drop),
-        LogCommand::Show { chosen, json } => {
-            let out = gate(&chosen.file, json)?;
-            let episode = episode(chosen)?;
+        LogCommand::Show { dump, number } => {
+            let out = gate(dump)?;
+            let episode = episode(&dump.file, *number)?;
             tell(out, &episode, |paint| show(&episode, paint))
         }
         LogCommand::Export {
-            chosen,
+            file,
+            number,
             format,
             out: name,
         } => {
-            let mut gate = Gate::new().reads("FILE", [&chosen.file]);
+            let mut gate = Gate::new().reads("FILE", [file]);
             for (option, name) in files(*format, name) {
                 gate = gate.writes(option, [name]);
             }
             let out = gate.open()?;
-            export(&episode(chosen)?, *format, out)
+            export(&episode(file, *number)?, *format, out)
         }
         LogCommand::Verify(args) => {
             let is_sound = is_sound(&all(args)?);
@@ -50,15 +51,15 @@ pub(super) fn log(command: &LogCommand) -> Result<(), Failure> {
     }
 }
 
-fn gate(file: &str, json: &Option<String>) -> Result<Outputs, Failure> {
-    let gate = Gate::new().reads("FILE", [file]);
-    gate.writes("--json", json).open()
+fn gate(args: &DumpArgs) -> Result<Outputs, Failure> {
+    let gate = Gate::new().reads("FILE", [&args.file]);
+    gate.writes("--json", &args.json).open()
 }
 
 /// Lists all episodes.
-fn all(DumpArgs { file, json }: &DumpArgs) -> Result<Dump, Failure> {
-    let out = gate(file, json)?;
-    let dump = source(file, |all| all)?;
+fn all(args: &DumpArgs) -> Result<Dump, Failure> {
+    let out = gate(args)?;
+    let dump = source(&args.file, |all| all)?;
     tell(out, &dump, |paint| list(&dump, paint))?;
     Ok(dump)
 }
@@ -80,14 +81,14 @@ fn tell(
     out.finish(told)
 }
 
-fn episode(ChosenArgs { file, number }: &ChosenArgs) -> Result<Episode, Failure> {
+fn episode(file: &str, number: Option<u32>) -> Result<Episode, Failure> {
     let dump = source(file, |all| {
         let wanted = number.unwrap_or(*all.end());
         wanted..=wanted
     })?;
     let mut all = dump.episodes.into_iter().rev();
     let found = match number {
-        Some(number) => all.find(|it| it.sequence == *number),
+        Some(number) => all.find(|it| it.sequence == number),
         None => all.next(),
     };
     found.ok_or_else(|| {

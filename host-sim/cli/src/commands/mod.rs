@@ -151,10 +151,7 @@ fn replay_stream(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Fails with `rule` where a check does not hold.
 fn holds(is_held: bool, rule: impl FnOnce() -> String) -> Result<(), Failure> {
-    match is_held {
-        true => Ok(()),
-        false => Err(Failure::Check(rule())),
-    }
+    is_held.then_some(()).ok_or_else(|| Failure::Check(rule()))
 }
 
 fn load(name: &str) -> Result<Scene, Failure> {

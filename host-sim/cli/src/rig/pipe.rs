@@ -11,8 +11,8 @@ pub struct Pipe {
     path: PathBuf,
     /// Once the image reads.
     file: Option<File>,
+    /// Put in, and not yet gone.
     waiting: Vec<u8>,
-    sent: usize,
 }
 
 impl Pipe {
@@ -26,20 +26,17 @@ impl Pipe {
             path: path.to_owned(),
             file: None,
             waiting: head,
-            sent: 0,
         })
     }
 
     /// Whether all that was put in has gone.
     pub fn is_free(&self) -> bool {
-        self.sent == self.waiting.len()
+        self.waiting.is_empty()
     }
 
     /// Puts bytes in.
     pub fn put(&mut self, bytes: impl Iterator<Item = u8>) {
-        self.waiting.clear();
         self.waiting.extend(bytes);
-        self.sent = 0;
     }
 
     /// Pushes on; whether all has gone. A reader that is not there, or gone, is waited for: whoever looks
@@ -52,9 +49,9 @@ impl Pipe {
                 .custom_flags(OFlags::NONBLOCK.bits() as i32);
             self.file = options.open(&self.path).ok();
         }
-        let rest = &self.waiting[self.sent..];
         if let Some(file) = &mut self.file {
-            self.sent += file.write(rest).unwrap_or(0);
+            let written = file.write(&self.waiting).unwrap_or(0);
+            self.waiting.drain(..written);
         }
         self.is_free()
     }
