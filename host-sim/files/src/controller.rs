@@ -69,13 +69,8 @@ pub fn table(outputs: &[OutputsFrom], paint: Paint) -> String {
     let mut text = paint.bold(&head) + "\n";
     let level = |on| if on { "on" } else { "off" };
     for it in outputs.iter().take(LISTED) {
-        let Outputs {
-            run,
-            no_brake,
-            permit,
-            ready,
-        } = it.outputs;
-        let [run, no_brake, permit, ready] = [run, no_brake, permit, ready].map(level);
+        let on = it.outputs;
+        let [run, no_brake, permit, ready] = [on.run, on.no_brake, on.permit, on.ready].map(level);
         let (mode, cause) = (<&str>::from(it.mode), it.cause.map_or("", <&str>::from));
         let time = it.time_s * 1e3;
         let line =

@@ -82,7 +82,7 @@ fn sensed<W: Write>(
     let mut chain = sensors.start(scene.run.seed);
     let mut faults = Faults::new(&scene.faults, config);
     let (mut trace, mut analyser) = (Trace::default(), Analyser::new(rate));
-    let mut stream = stream.map(|out| StreamWriter::new(out, columns(config)));
+    let mut stream = stream.map(|out| StreamWriter::new(out, columns(config), None));
     let levitated = scene.levitated_samples();
     // An end that is a whole number of samples but for rounding has its own sample.
     let count = levitated + (scene.run.duration * rate + 1e-6).floor() as u64 + 1;

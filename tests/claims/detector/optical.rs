@@ -500,7 +500,7 @@ fn pulses_come_through_stream_and_wire_unchanged() {
         levitated: false,
         edges: [true; 2],
     };
-    let mut writer = StreamWriter::new(Vec::new(), columns).expect("memory");
+    let mut writer = StreamWriter::new(Vec::new(), columns, None).expect("memory");
     for (k, sample) in samples.iter().enumerate() {
         let row = to_row(k as f64 / RATE, sample, &sensors, RATE);
         writer.write(&row).expect("memory");
@@ -541,7 +541,7 @@ fn a_recorded_stream_with_pulses_replays_to_the_same_verdict() {
             edges: [edges, false],
         };
         let file = tempfile::NamedTempFile::new().expect("a file");
-        let mut writer = StreamWriter::new(&file, columns).expect("a file");
+        let mut writer = StreamWriter::new(&file, columns, None).expect("a file");
         for (k, sample) in samples.iter().enumerate() {
             let row = to_row(k as f64 / RATE, sample, &scene.sensors, RATE);
             writer.write(&row).expect("a file");

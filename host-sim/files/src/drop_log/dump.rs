@@ -1,6 +1,5 @@
 //! A log: a dump of the flash, a file of one episode, or what is fetched from the controller over the link.
 
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -139,16 +138,15 @@ fn held(flash: &mut RamNor, number: usize) -> Option<Episode> {
     Some(episode)
 }
 
+/// Of episodes in the order of their numbers.
 fn mark_twins(episodes: &mut [Episode]) {
-    let mut slots: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for it in episodes.iter() {
-        slots.entry(it.sequence).or_default().extend(it.slot);
-    }
-    for it in episodes {
-        let own = it.slot;
-        let others = slots[&it.sequence].iter();
-        for slot in others.filter(|slot| Some(**slot) != own) {
-            it.flaw(format!("slot {slot} has an episode of the same number"));
+    for twins in episodes.chunk_by_mut(|a, b| a.sequence == b.sequence) {
+        let slots: Vec<_> = twins.iter().filter_map(|it| it.slot).collect();
+        for it in twins {
+            let own = it.slot;
+            for slot in slots.iter().filter(|slot| own != Some(**slot)) {
+                it.flaw(format!("slot {slot} has an episode of the same number"));
+            }
         }
     }
 }

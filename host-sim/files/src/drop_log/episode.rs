@@ -9,15 +9,17 @@ use touchdown_core::sample::{CHANNELS, Edges, TACHOMETERS};
 use touchdown_core::sensing::Sensing;
 use touchdown_protocol::log::ending::Ending;
 use touchdown_protocol::log::header::Header;
-use touchdown_protocol::log::pulses::Pulses;
 use touchdown_protocol::log::reader::{Damage, Item, MOST_BLOCKS, Reader, Report, Verdict};
-use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK, Waveform};
+use touchdown_protocol::log::waveform::{Counts, NO_VALUE, SAMPLES_PER_BLOCK};
 use touchdown_protocol::wire::{Record, decode_record};
 
 use crate::controller::{AlarmAt, OutputsFrom};
 use crate::link::refused_why;
 use crate::stream::{of_field, to_field};
 use touchdown_scene::names::channel_name;
+
+/// More than an episode has.
+const MOST_SAMPLES: usize = MOST_BLOCKS * SAMPLES_PER_BLOCK;
 
 /// An episode.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -121,8 +123,9 @@ impl Episode {
                     episode.severity = Some((version, bytes.to_vec()));
                 }
                 Item::Events(it) => records.extend(it.iter().filter_map(decode_record)),
-                Item::Pulses(it) => take_pulses(&mut episode.pulses, &it),
-                Item::Waveform(it) => take_samples(&mut episode.samples, &it),
+                Item::Pulses(it) => put(&mut episode.pulses, it.from.into(), it.samples()),
+                Item::Waveform(it) if it.start as usize >= MOST_SAMPLES => {}
+                Item::Waveform(it) => put(&mut episode.samples, it.start as usize, it.samples()),
             }
         }
         episode.report = reader.finish(|it| episode.damage.push(it));
@@ -132,7 +135,9 @@ impl Episode {
         if episode.report.ended {
             episode.complete = Completeness::Yes;
         }
-        episode.learnt = learnt(&parts);
+        // Nothing where a part is missing.
+        let learnt = to_field(parts.into_iter());
+        episode.learnt = of_field(&learnt).map(|_| learnt);
         if let Some(header) = episode.header {
             let known = episode.pulses.iter().flatten().count();
             episode.samples_with_pulses = (header.pulsed != 0).then_some(known);
@@ -215,29 +220,12 @@ impl Episode {
     }
 }
 
-fn take_samples(samples: &mut Vec<Option<Counts>>, block: &Waveform<'_>) {
-    let start = block.start as usize;
-    if start < MOST_BLOCKS * SAMPLES_PER_BLOCK {
-        let end = start + block.samples().len();
-        samples.resize(samples.len().max(end), None);
-        for (place, counts) in samples.iter_mut().skip(start).zip(block.samples()) {
-            *place = Some(counts);
-        }
+/// Puts what a block tells of the samples from `first` on in its place.
+fn put<T: Clone>(all: &mut Vec<Option<T>>, first: usize, told: impl Iterator<Item = T>) {
+    for (place, it) in (first..).zip(told) {
+        all.resize(all.len().max(place + 1), None);
+        all[place] = Some(it);
     }
-}
-
-fn take_pulses(pulses: &mut Vec<Option<[Option<Edges>; TACHOMETERS]>>, block: &Pulses<'_>) {
-    let (from, to) = (usize::from(block.from), usize::from(block.to));
-    pulses.resize(pulses.len().max(to), None);
-    for (place, shown) in pulses[from.min(to)..to].iter_mut().zip(block.samples()) {
-        *place = Some(shown);
-    }
-}
-
-/// Nothing where a part is missing.
-fn learnt(parts: &[&[u8]]) -> Option<String> {
-    let field = to_field(parts.iter().copied());
-    of_field(&field).map(|_| field)
 }
 
 /// What a header of no recorder says.

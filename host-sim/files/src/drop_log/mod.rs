@@ -39,7 +39,7 @@ pub fn stream(episode: &Episode, out: impl Write) -> std::io::Result<bool> {
         }),
     };
     let rate = f64::from(header.sample_rate);
-    let mut writer = StreamWriter::of_learnt(out, columns, episode.learnt.clone())?;
+    let mut writer = StreamWriter::new(out, columns, episode.learnt.clone())?;
     for (number, counts) in episode.samples.iter().enumerate() {
         let edges = episode.pulses.get(number).copied().flatten();
         let edges = edges.unwrap_or_default();

@@ -145,21 +145,14 @@ fn comment_of(lines: &[Line]) -> Option<Comment> {
     marks.find(|mark| lines.iter().any(|it| it.begins_with(*mark)))
 }
 
-/// The fields of a line, without blanks and quotes about them.
+/// The fields of a line, without blanks and quotes about them, as they are read later.
 fn split(line: &str, delimiter: Delimiter) -> Vec<String> {
-    let between = char::from(delimiter as u8);
-    let mut fields = vec![String::new()];
-    let mut quoted = false;
-    for letter in line.chars() {
-        if letter == '"' {
-            quoted = !quoted;
-        } else if letter == between && !quoted {
-            fields.push(String::new());
-        } else if let Some(field) = fields.last_mut() {
-            field.push(letter);
-        }
-    }
-    fields.iter().map(|it| it.trim().to_owned()).collect()
+    let mut reader = csv::ReaderBuilder::new();
+    let reader = reader.has_headers(false).trim(csv::Trim::All);
+    let reader = reader.delimiter(delimiter as u8);
+    let record = reader.from_reader(line.as_bytes()).records().next();
+    let record = record.and_then(Result::ok).unwrap_or_default();
+    record.iter().map(str::to_owned).collect()
 }
 
 /// Delimiter and decimal sign by which most of the last lines' fields are numbers.

@@ -116,13 +116,7 @@ impl Resampled {
             0 => String::new(),
             gaps => format!("; {gaps} gaps, in which nothing is made up"),
         };
-        let Self {
-            read,
-            made,
-            rate,
-            empty,
-            ..
-        } = self;
+        let (read, made, rate, empty) = (self.read, self.made, self.rate, self.empty);
         let mean = (read - 1) as f64 / (self.from.stamp.time - self.start);
         let from = format!("from {read} rows at {mean:.6} Hz on average");
         let to = format!("to {made} samples at {rate} Hz, {empty} of them without a value{gaps}");

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::account::Account;
-use super::clock::{Clock, LOOK_AHEAD, Stamp};
+use super::clock::{Clock, LOOK_AHEAD};
 use super::row::{RATES, Row, Stamped};
 use super::survey::Survey;
 use touchdown_base::input_error::InputError;
@@ -41,40 +41,35 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         let Some(first) = rows.next().transpose()? else {
             return Err(account.at_line(before, "there are no rows after the header"));
         };
+        let ahead = rows.by_ref().take(LOOK_AHEAD - 1);
+        let ahead: Vec<Stamped> = ahead.collect::<Result<_, _>>()?;
         let mut clock = Clock::new(first.stamp);
-        let mut ahead = VecDeque::from([first.row]);
-        let mut stamps = Vec::new();
-        for next in rows.by_ref().take(LOOK_AHEAD - 1) {
-            let next = next?;
-            clock.learn(next.stamp);
-            ahead.push_back(next.row);
-            stamps.push((next.stamp, next.line));
-        }
-        let second = stamps.first().map_or(first.line, |(_, line)| *line);
-        let finished = stamps.len() + 1 < LOOK_AHEAD;
-        let times = stamps.iter().map(|(stamp, _)| stamp.time);
+        ahead.iter().for_each(|it| clock.learn(it.stamp));
+        let times = ahead.iter().map(|it| it.stamp.time);
         let mut even = Self {
             account: account.clone(),
             rows,
             clock,
             survey: Survey::new(first.stamp.time, times),
-            ahead,
+            ahead: VecDeque::from([first.row]),
             rate: 0.0,
-            finished,
+            finished: ahead.len() + 1 < LOOK_AHEAD,
         };
-        for (index, (stamp, line)) in stamps.iter().enumerate() {
-            if let Err(rule) = even.hold(*stamp, *line) {
-                let rest = &stamps[index + 1..];
-                rest.iter().for_each(|it| even.survey.take(it.0.time, it.1));
-                return Err(even.uneven(*line, rule));
+        for (index, next) in ahead.iter().enumerate() {
+            if let Err(rule) = even.hold(next) {
+                let rest = ahead[index + 1..].iter();
+                rest.for_each(|it| even.survey.take(it.stamp.time, it.line));
+                return Err(even.uneven(next.line, rule));
             }
+            even.ahead.push_back(next.row);
         }
         let Some(rate) = even.clock.rate() else {
             let rule = "one row alone has no sample rate";
             return Err(account.at_line(first.line, rule));
         };
         if !is_rate(rate) {
-            return Err(account.at_line(second, not_a_rate(rate)));
+            let second = ahead.first().unwrap_or(&first);
+            return Err(account.at_line(second.line, not_a_rate(rate)));
         }
         even.rate = rate;
         Ok(even)
@@ -85,9 +80,9 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         self.clock.first
     }
 
-    fn hold(&mut self, stamp: Stamp, line: u64) -> Result<(), String> {
-        self.survey.take(stamp.time, line);
-        self.clock.take(stamp)
+    fn hold(&mut self, next: &Stamped) -> Result<(), String> {
+        self.survey.take(next.stamp.time, next.line);
+        self.clock.take(next.stamp)
     }
 
     fn read_row(&mut self) -> Result<Option<Row>, InputError> {
@@ -97,7 +92,7 @@ impl<I: Iterator<Item = Result<Stamped, InputError>>> Even<I> {
         let Some(next) = self.rows.next().transpose()? else {
             return Ok(None);
         };
-        match self.hold(next.stamp, next.line) {
+        match self.hold(&next) {
             Ok(()) => Ok(Some(next.row)),
             Err(rule) => Err(self.uneven(next.line, rule)),
         }

@@ -86,24 +86,19 @@ impl<R: Read> Records<R> {
             let rule = format!("a row needs {needed} fields, this one has {there}");
             return Err(fail(rule));
         }
-        let no_time = || {
-            fail(format!(
-                "time_s must be a finite number, is {:?}",
-                &record[0]
-            ))
-        };
-        let stamp = Stamp::parse(&record[0]).ok_or_else(no_time)?;
         let broken = |(name, text): (&str, &str), rule: &str| {
             fail(format!("{name} must be {rule}, is {text:?}"))
         };
+        let mut fields = header.iter().copied().zip(record);
+        // There are as many as the columns want.
+        let mut next = || fields.next().unwrap_or_default();
+        let time = next();
+        let stamp = Stamp::parse(time.1).ok_or_else(|| broken(time, "a finite number"))?;
         let number = |(name, text): (&str, &str)| match text.parse::<f64>() {
             _ if is_missing(text) => Ok(f64::NAN),
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(broken((name, text), "a finite number, empty or NaN")),
         };
-        let mut fields = header.iter().copied().zip(record).skip(1);
-        // There are as many as the columns want.
-        let mut next = || fields.next().unwrap_or_default();
         let mut positions = [f64::NAN; CHANNELS];
         for position in &mut positions[..2 * usize::from(columns.planes)] {
             *position = MICRO * number(next())?;

@@ -14,13 +14,8 @@ pub struct StreamWriter<W> {
 }
 
 impl<W: Write> StreamWriter<W> {
-    /// Writes the header.
-    pub fn new(out: W, columns: Columns) -> io::Result<Self> {
-        Self::of_learnt(out, columns, None)
-    }
-
-    /// The same, of a stream that says what had been learnt before it.
-    pub fn of_learnt(mut out: W, columns: Columns, learnt: Option<String>) -> io::Result<Self> {
+    /// Writes the header; `learnt` is what had been learnt before the first row, where the stream says so.
+    pub fn new(mut out: W, columns: Columns, learnt: Option<String>) -> io::Result<Self> {
         let mut names = columns.header();
         names.extend(learnt.is_some().then_some(LEARNT));
         writeln!(out, "{}", names.join(","))?;

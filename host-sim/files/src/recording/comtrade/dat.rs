@@ -95,11 +95,11 @@ impl Dat {
 }
 
 fn of_text(record: &ByteRecord, cfg: &Cfg, values: &mut [f64]) -> Result<Sample, String> {
-    let needed = 2 + values.len();
-    let there = record.len();
+    let (needed, there) = (2 + values.len(), record.len());
     if there != needed {
-        let rule = format!("a sample needs {needed} fields");
-        return Err(format!("{rule}, this one has {there}"));
+        return Err(format!(
+            "a sample needs {needed} fields, this one has {there}"
+        ));
     }
     let text = |at: usize| std::str::from_utf8(&record[at]).unwrap_or("?");
     let number = |at: usize| match (text(at), text(at).parse::<f64>()) {
