@@ -2,7 +2,6 @@
 
 use core::hint::black_box;
 
-use touchdown_rotor::scales::Scales;
 use touchdown_rotor::{Precision, RigidConfig, Solved, Start, Stepper, Touch};
 
 use touchdown_counter::{Counter, Name, Table, Tally};
@@ -68,11 +67,9 @@ pub(super) struct Counts {
 }
 
 impl Run<'_> {
-    pub(super) fn of_model<R: Precision, M: Stepper<R>>(
-        &self,
-        model: &M,
-        scales: &Scales<f64>,
-    ) -> Counts {
+    /// Rungs with rings of their own have a start of their own: of these scales only the spin's counts.
+    pub(super) fn of_model<R: Precision, M: Stepper<R>>(&self, model: &M) -> Counts {
+        let (_, scales) = config(self.step).scaled().expect("a valid configuration");
         let start = Start::Free {
             position: POSITION.map(|x| x / scales.length),
             velocity: [0.0; 2],

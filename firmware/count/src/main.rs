@@ -48,7 +48,7 @@ fn of_number<R: Precision>(counter: &Counter, table: &mut Table, name: Name) {
             duration: WHOLE,
         };
         let rigid = Rigid::try_new(&config(step)).expect("a valid configuration");
-        run.of_model::<R, _>(&rigid.rounded(), rigid.scales())
+        run.of_model::<R, _>(&rigid.rounded())
             .write(table, "rigid", "launch", &run);
     }
     models::in_plane::<R>(counter, table, name);

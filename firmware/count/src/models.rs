@@ -24,8 +24,8 @@ pub(super) fn in_plane<R: Precision>(counter: &Counter, table: &mut Table, name:
     };
     for step in STEPS {
         let run = with_step(step);
-        let moreau = Moreau::try_new(&config(step)).expect("a valid configuration");
-        run.of_model::<R, _>(&moreau.rounded(), moreau.scales())
+        let moreau = Moreau::<R>::try_new(&config(step)).expect("a valid configuration");
+        run.of_model::<R, _>(&moreau)
             .write(table, "moreau", "midpoint", &run);
     }
     for step in SHORT_STEPS {
@@ -44,11 +44,9 @@ pub(super) fn in_rings<R: Precision>(counter: &Counter, table: &mut Table, name:
             step,
             duration: BEGIN,
         };
-        // Their start is their own: of these scales only the spin's counts.
-        let plane = Moreau::try_new(&config(step)).expect("a valid configuration");
-        run.of_model::<R, _>(&support::<R>(step), plane.scales())
+        run.of_model::<R, _>(&support::<R>(step))
             .write(table, "support", "midpoint", &run);
-        run.of_model::<R, _>(&ends::<R>(step), plane.scales())
+        run.of_model::<R, _>(&ends::<R>(step))
             .write(table, "two-plane", "midpoint", &run);
     }
 }
@@ -62,8 +60,8 @@ impl Run<'_> {
             contact: Contact::Point,
             fastest: FASTEST,
         };
-        let model = Hertz::try_new(&config, scheme).expect("a valid configuration");
-        self.of_model::<R, _>(&model.rounded(), model.scales())
+        let model = Hertz::<R>::try_new(&config, scheme).expect("a valid configuration");
+        self.of_model::<R, _>(&model)
             .write(table, "hertz", name, self);
     }
 }

@@ -41,11 +41,7 @@ pub struct Validity {
 impl Validity {
     /// In the fastest impact of `contact` at the axial place `zeta` (in radii of gyration from the centre of
     /// mass), where an impact meets 1/(1 + zeta^2) of the mass.
-    pub fn try_new(
-        contact: &HertzConfig<f64>,
-        zeta: f64,
-        mode_hz: f64,
-    ) -> Result<Self, ConfigError> {
+    pub fn try_new(contact: &HertzConfig, zeta: f64, mode_hz: f64) -> Result<Self, ConfigError> {
         if !(mode_hz > 0.0 && mode_hz.is_finite()) {
             return Err(ConfigError::NotPositive("mode_hz"));
         }

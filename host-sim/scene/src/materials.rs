@@ -23,7 +23,7 @@ pub struct CompliantWall {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Materials {
     /// Moduli and Poisson's ratios.
-    pub elastic: Elastic<f64>,
+    pub elastic: Elastic,
     /// The shape of the contact.
     pub contact: Contact,
     /// By the scene; else steel on steel is taken.

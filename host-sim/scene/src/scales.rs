@@ -13,7 +13,7 @@ use crate::{CompliantWall, Ring, Scene, TwoPlane};
 const SLOWEST: f64 = 1e-3;
 
 /// How stiff the scene's contact is.
-pub fn compliance(scene: &Scene) -> Result<Compliance<f64>, ConfigError> {
+pub fn compliance(scene: &Scene) -> Result<Compliance, ConfigError> {
     compliant(scene).compliance()
 }
 
@@ -67,7 +67,7 @@ pub(super) fn accurate_step(scene: &Scene) -> f64 {
 }
 
 /// Contact of the scene.
-pub fn compliant(scene: &Scene) -> HertzConfig<f64> {
+pub fn compliant(scene: &Scene) -> HertzConfig {
     HertzConfig {
         rigid: config(scene),
         materials: scene.materials.elastic,

@@ -20,7 +20,7 @@ const MASS: f64 = 3.42;
 const GAP: f64 = 0.3e-3;
 
 /// The rig of the paper without gravity.
-fn config(contact: Contact, restitution: f64, step: f64) -> HertzConfig<f64> {
+fn config(contact: Contact, restitution: f64, step: f64) -> HertzConfig {
     HertzConfig {
         rigid: RigidConfig {
             mass: MASS,
@@ -51,10 +51,9 @@ struct Hit {
 
 /// The first impact at `speed` (in units of the fastest), released a part of a step away from the
 /// wall.
-fn hit<R: Precision>(config: &HertzConfig<f64>, scheme: ContactScheme, speed: f64, phase: f64) -> Hit {
-    let exact = Hertz::<f64>::try_new(config, scheme).expect("valid configuration");
-    let scales = *exact.scales();
-    let model = exact.rounded::<R>();
+fn hit<R: Precision>(config: &HertzConfig, scheme: ContactScheme, speed: f64, phase: f64) -> Hit {
+    let (_, scales) = config.rigid.scaled().expect("valid configuration");
+    let model = Hertz::<R>::try_new(config, scheme).expect("valid configuration");
     let step = config.rigid.step / scales.time;
     let path = step * speed;
     let whole = (1.0 / path).floor().min(20.0);
@@ -233,7 +232,7 @@ fn the_power_law_of_a_line_is_the_secant_of_the_logarithm() {
 
 #[test]
 fn restitution_is_what_was_asked_for() {
-    let time = |c: Result<Compliance<f64>, _>| c.expect("valid").contact_time;
+    let time = |c: Result<Compliance, _>| c.expect("valid").contact_time;
     let (point, line) = (
         time(config(Contact::Point, 1.0, 1e-6).compliance()),
         time(config(Contact::Line { length: 0.02 }, 1.0, 1e-6).compliance()),
@@ -268,7 +267,7 @@ fn restitution_is_what_was_asked_for() {
 
 /// The plain scheme at `step`, without the model's guard: launch speed over entry speed, worst of
 /// many phases.
-fn unguarded(compliance: &Compliance<f64>, step: f64) -> f64 {
+fn unguarded(compliance: &Compliance, step: f64) -> f64 {
     (0..200).fold(0.0, |worst, phase| {
         let mut depth = f64::from(phase) / 200.0 * step * FALL;
         let mut speed = FALL;
@@ -382,7 +381,7 @@ proptest! {
 }
 
 fn finite(
-    mut config: HertzConfig<f64>,
+    mut config: HertzConfig,
     (friction, spin, gravity): (f64, f64, f64),
     part: f64,
     angle: f64,
@@ -392,8 +391,7 @@ fn finite(
     config.rigid.friction = friction;
     config.rigid.gravity = gravity;
     config.rigid.step = part * config.compliance().expect("valid").longest_step();
-    let exact = Hertz::<f64>::try_new(&config, ContactScheme::Euler).expect("valid");
-    let model = exact.rounded::<f32>();
+    let model = Hertz::<f32>::try_new(&config, ContactScheme::Euler).expect("valid");
     let (sin, cos) = (angle.sin() as f32, angle.cos() as f32);
     let start = if wall {
         Start::Wall { sin, cos, tangential: speed as f32 }

@@ -4,7 +4,7 @@ use touchdown_models::{Contact, HertzConfig, Materials};
 use touchdown_rotor::RigidConfig;
 use touchdown_scene::elastic::{Validity, Verdict};
 
-fn rig() -> HertzConfig<f64> {
+fn rig() -> HertzConfig {
     HertzConfig {
         rigid: RigidConfig {
             mass: 3.42,

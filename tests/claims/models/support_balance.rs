@@ -121,7 +121,7 @@ fn beside(fall: &Fall, time: f64) -> [f64; 2] {
     let reference::Start::Free { position, velocity } = fall.start else {
         panic!("a drop");
     };
-    let scales = *model.scales();
+    let (_, scales) = fall.rigid.scaled().expect("valid configuration");
     let start = Start::Free {
         position: position.map(|x| x / scales.length),
         velocity: velocity.map(|v| v / scales.speed),

@@ -112,7 +112,7 @@ struct Press<'a> {
     /// The scene.
     scene: &'a Scene,
     /// Of its contact.
-    stiff: &'a Compliance<f64>,
+    stiff: &'a Compliance,
 }
 
 impl Use for Press<'_> {

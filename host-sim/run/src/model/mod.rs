@@ -84,7 +84,7 @@ pub fn with_model<U: Use>(scene: &Scene, what: U) -> Result<U::Output, ConfigErr
         match scene.model.rung {
             Fidelity::Rigid => {
                 let model = Rigid::try_new(&config(scene))?.with_cutoff(scene.model.cutoff);
-                what.with(&subject(scene, model.rounded::<R>(), *model.scales()))
+                what.with(&subject(scene, model.rounded::<R>())?)
             }
             _ => what.with(&R::by_steps(scene)?),
         }
@@ -100,17 +100,13 @@ fn in_rung<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigEr
 
 fn in_plane<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigError> {
     match scene.model.rung {
-        Fidelity::Moreau => {
-            let model = Moreau::try_new(&config(scene))?;
-            Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
-        }
+        Fidelity::Moreau => boxed(scene, Moreau::<R>::try_new(&config(scene))?),
         Fidelity::Hertz => {
             let scheme = match scene.model.scheme {
                 touchdown_scene::Scheme::Verlet => Scheme::Verlet,
                 _ => Scheme::Euler,
             };
-            let model = Hertz::try_new(&compliant(scene), scheme)?;
-            Ok(boxed(scene, model.rounded::<R>(), *model.scales()))
+            boxed(scene, Hertz::<R>::try_new(&compliant(scene), scheme)?)
         }
         _ => Err(ConfigError::OutOfRange("math", "one that the rung has")),
     }
@@ -119,26 +115,25 @@ fn in_plane<R: Precision>(scene: &Scene) -> Result<Subject<R, Boxed<R>>, ConfigE
 fn subject<R: Precision, M: Stepper<R>>(
     scene: &Scene,
     model: M,
-    scales: Scales<f64>,
-) -> Subject<R, M> {
-    Subject {
+) -> Result<Subject<R, M>, ConfigError> {
+    let (_, scales) = config(scene).scaled()?;
+    Ok(Subject {
         model,
         start: scaled(&scene.start, &scales).rounded(),
         spin: R::lit(scene.rotor.spin / scales.spin),
         scales,
         state_size: size_of::<M::State>(),
-    }
+    })
 }
 
 fn boxed<R: Precision, M: Stepper<R> + 'static>(
     scene: &Scene,
     model: M,
-    scales: Scales<f64>,
-) -> Subject<R, Boxed<R>> {
-    Subject {
+) -> Result<Subject<R, Boxed<R>>, ConfigError> {
+    Ok(Subject {
         state_size: size_of::<M::State>(),
-        ..subject(scene, Boxed::new(model), scales)
-    }
+        ..subject(scene, Boxed::new(model))?
+    })
 }
 
 fn scaled(start: &Start, scales: &Scales<f64>) -> ScaledStart<f64> {

@@ -1,6 +1,6 @@
 //! A rotor, its retainer and what they are made of.
 
-use super::shape::{Contact, Materials, Pairing};
+use super::shape::{Contact, Materials};
 use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
@@ -8,69 +8,62 @@ use touchdown_rotor::scales::positive;
 
 /// A rotor and its compliant retainer, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HertzConfig<R> {
+pub struct HertzConfig {
     /// What it shares with the rigid rung.
-    pub rigid: RigidConfig<R>,
+    pub rigid: RigidConfig<f64>,
     /// What rotor and retainer are made of.
-    pub materials: Materials<R>,
+    pub materials: Materials,
     /// How they touch.
     pub contact: Contact,
     /// Speed of the fastest impact expected, m/s: it sets the longest step.
-    pub fastest: R,
+    pub fastest: f64,
 }
 
 /// How stiff the contact is, SI; without damping and without gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compliance<R> {
+pub struct Compliance {
     /// K in force = K d^n, N/m^n; in force = K d/(ln(4 K c/force) - 1), N/m, of a line.
-    pub stiffness: R,
+    pub stiffness: f64,
     /// Compression of the fastest impact, m.
-    pub deepest: R,
+    pub deepest: f64,
     /// Force of the fastest impact, N.
-    pub peak_force: R,
+    pub peak_force: f64,
     /// omega_c, the rate of small oscillations there, rad/s.
-    pub rate: R,
+    pub rate: f64,
     /// T_c, the duration of the fastest impact, s.
-    pub contact_time: R,
+    pub contact_time: f64,
 }
 
-impl<R: Real> Compliance<R> {
+impl Compliance {
     /// 2/omega_c, s: beyond it a step is unstable.
-    pub fn longest_step(&self) -> R {
-        R::TWO / self.rate
+    pub fn longest_step(&self) -> f64 {
+        2.0 / self.rate
     }
 
     /// T_c/25, s: up to it a step is accurate to a few percent of the force.
-    pub fn accurate_step(&self) -> R {
-        self.contact_time / R::from_i32(25)
+    pub fn accurate_step(&self) -> f64 {
+        self.contact_time / 25.0
     }
 }
 
-impl<R: Real> HertzConfig<R> {
+impl HertzConfig {
     /// Checks what the contact's stiffness depends on, and works it out.
-    pub fn compliance(&self) -> Result<Compliance<R>, ConfigError> {
-        let (mass, speed) = (self.rigid.mass, self.fastest);
-        positive("mass", mass)?;
+    pub fn compliance(&self) -> Result<Compliance, ConfigError> {
+        let (rigid, speed) = (&self.rigid, self.fastest);
+        positive("mass", rigid.mass)?;
         positive("fastest", speed)?;
-        positive("radius", self.rigid.radius)?;
-        positive("clearance", self.rigid.clearance)?;
-        let pairing = Pairing {
-            modulus: self.materials.contact_modulus()?,
-            radius: self.rigid.radius,
-            clearance: self.rigid.clearance,
-            mass,
-            speed,
-        };
-        let stiffness = self.contact.stiffness(&pairing)?;
+        positive("radius", rigid.radius)?;
+        positive("clearance", rigid.clearance)?;
+        let stiffness = self.contact.stiffness(self)?;
         let shape = self.contact.shape();
-        let deepest = shape.deepest(&pairing, stiffness);
-        let power = shape.power(deepest, pairing.clearance);
+        let deepest = shape.deepest(self, stiffness);
+        let power = shape.power(deepest, rigid.clearance);
         let force = stiffness * power;
         let compliance = Compliance {
             stiffness,
             deepest,
             peak_force: force,
-            rate: (shape.slope(deepest, power) * force / (deepest * mass)).sqrt(),
+            rate: Real::sqrt(shape.slope(deepest, power) * force / (deepest * rigid.mass)),
             contact_time: shape.duration(deepest, power) * deepest / speed,
         };
         positive("fastest", compliance.contact_time)?;

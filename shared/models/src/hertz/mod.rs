@@ -23,7 +23,6 @@ use touchdown_rotor::kinematics::{Change, Kinematics, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
-use touchdown_rotor::scales::Scales;
 use touchdown_rotor::start::Start;
 use touchdown_rotor::stepper::Stepper;
 
@@ -45,12 +44,11 @@ pub struct Hertz<R> {
     slowest: R,
     /// Length of a step, T.
     step: R,
-    scales: Scales<R>,
 }
 
 impl<R: Precision> Hertz<R> {
-    /// Checks `config` and works out the coefficients. A step above 2/omega_c is refused.
-    pub fn try_new(config: &HertzConfig<R>, scheme: Scheme) -> Result<Self, ConfigError> {
+    /// Checks `config` and works out the coefficients, each rounded once. A step above 2/omega_c is refused.
+    pub fn try_new(config: &HertzConfig, scheme: Scheme) -> Result<Self, ConfigError> {
         let (law, scales) = config.rigid.scaled()?;
         let compliance = config.compliance()?;
         if config.rigid.step > compliance.longest_step() {
@@ -60,43 +58,21 @@ impl<R: Precision> Hertz<R> {
         let deepest = compliance.deepest / scales.length;
         let fastest = config.fastest / scales.speed;
         let shape = config.contact.shape();
-        let power = shape.power(deepest, R::ONE);
+        let power = shape.power(deepest, 1.0);
         let parts = shape.parts(deepest, power);
-        let stiffness = R::HALF * parts * fastest * fastest / (power * deepest);
+        let stiffness = 0.5 * parts * fastest * fastest / (power * deepest);
         // A fall through the static compression: slower, gravity and not the impact decides.
-        let settled = shape.depth(law.gravity / stiffness, R::ONE);
-        let slowest = (R::TWO * law.gravity * settled).sqrt();
+        let settled = shape.depth(law.gravity / stiffness, 1.0);
+        let slowest = (2.0 * law.gravity * settled).sqrt();
         Ok(Self {
-            damping: damping::damping(law.restitution),
-            law,
+            damping: R::lit(damping::damping(law.restitution)),
+            law: law.rounded(),
             shape,
             scheme,
-            stiffness,
-            slowest: slowest.most(R::lit(SLOWEST) * fastest),
-            step: config.rigid.step / scales.time,
-            scales,
+            stiffness: R::lit(stiffness),
+            slowest: R::lit(slowest.most(SLOWEST * fastest)),
+            step: R::lit(config.rigid.step / scales.time),
         })
-    }
-
-    /// The model's units.
-    pub fn scales(&self) -> &Scales<R> {
-        &self.scales
-    }
-}
-
-impl Hertz<f64> {
-    /// The same model with every coefficient rounded once.
-    pub fn rounded<R: Real>(&self) -> Hertz<R> {
-        Hertz {
-            law: self.law.rounded(),
-            shape: self.shape,
-            scheme: self.scheme,
-            stiffness: R::lit(self.stiffness),
-            damping: R::lit(self.damping),
-            slowest: R::lit(self.slowest),
-            step: R::lit(self.step),
-            scales: self.scales.rounded(),
-        }
     }
 }
 

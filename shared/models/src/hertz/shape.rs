@@ -1,5 +1,9 @@
 //! The shapes that touch, and the stiffness that they give.
 
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use super::config::HertzConfig;
+use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::positive;
@@ -11,31 +15,30 @@ const POLISHINGS: usize = 3;
 
 /// Elastic constants of rotor and retainer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Materials<R> {
+pub struct Materials {
     /// Young's modulus of the rotor, Pa.
-    pub rotor_modulus: R,
+    pub rotor_modulus: f64,
     /// Poisson's ratio of the rotor, 0 to 0.5.
-    pub rotor_poisson: R,
+    pub rotor_poisson: f64,
     /// Young's modulus of the retainer, Pa.
-    pub retainer_modulus: R,
+    pub retainer_modulus: f64,
     /// Poisson's ratio of the retainer, 0 to 0.5.
-    pub retainer_poisson: R,
+    pub retainer_poisson: f64,
 }
 
-impl<R: Real> Materials<R> {
+impl Materials {
     /// Steel on steel, 210 GPa and 0.3: the contact modulus times pi is 3.625e11 Pa.
-    pub fn steel() -> Self {
-        let (modulus, poisson) = (R::lit(210e9), R::lit(0.3));
+    pub const fn steel() -> Self {
         Self {
-            rotor_modulus: modulus,
-            rotor_poisson: poisson,
-            retainer_modulus: modulus,
-            retainer_poisson: poisson,
+            rotor_modulus: 210e9,
+            rotor_poisson: 0.3,
+            retainer_modulus: 210e9,
+            retainer_poisson: 0.3,
         }
     }
 
     /// E*, Pa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-    pub fn contact_modulus(&self) -> Result<R, ConfigError> {
+    pub fn contact_modulus(&self) -> Result<f64, ConfigError> {
         positive("rotor_modulus", self.rotor_modulus)?;
         positive("retainer_modulus", self.retainer_modulus)?;
         let ratios = [
@@ -43,29 +46,15 @@ impl<R: Real> Materials<R> {
             ("retainer_poisson", self.retainer_poisson),
         ];
         for (name, ratio) in ratios {
-            if !(ratio >= R::ZERO && ratio <= R::HALF) {
+            if !(0.0..=0.5).contains(&ratio) {
                 return Err(ConfigError::OutOfRange(name, "0 to 0.5"));
             }
         }
-        let softness = |modulus: R, poisson: R| (R::ONE - poisson * poisson) / modulus;
-        Ok(R::ONE
+        let softness = |modulus: f64, poisson: f64| (1.0 - poisson * poisson) / modulus;
+        Ok(1.0
             / (softness(self.rotor_modulus, self.rotor_poisson)
                 + softness(self.retainer_modulus, self.retainer_poisson)))
     }
-}
-
-/// What the stiffness follows from, SI.
-pub(super) struct Pairing<R> {
-    /// E*, Pa.
-    pub(super) modulus: R,
-    /// Of the rotor, m.
-    pub(super) radius: R,
-    /// Radial clearance, m.
-    pub(super) clearance: R,
-    /// kg.
-    pub(super) mass: R,
-    /// Of the fastest impact expected, m/s.
-    pub(super) speed: R,
 }
 
 /// How rotor and retainer touch.
@@ -96,26 +85,35 @@ impl Contact {
         }
     }
 
-    /// K, N/m^n. 4/3 E* sqrt(R_eff) of a point, with R_eff = r R/(R - r) and R - r the clearance.
-    pub(super) fn stiffness<R: Real>(self, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-        let plane = |length| plane(R::lit(length), pairing);
+    /// K, N/m^n. 4/3 E* sqrt(R_eff) of a point, with R_eff = r R/(R - r) and R - r the clearance; pi E* L of a line.
+    pub(super) fn stiffness(self, config: &HertzConfig) -> Result<f64, ConfigError> {
+        let modulus = config.materials.contact_modulus()?;
+        let &RigidConfig {
+            mass,
+            radius,
+            clearance,
+            ..
+        } = &config.rigid;
+        let plane = |length| {
+            positive("length", length)?;
+            Ok(PI * modulus * length)
+        };
         match self {
             Self::Point => {
-                let outer = pairing.radius + pairing.clearance;
-                let curvature = pairing.radius / pairing.clearance * outer;
-                Ok(R::lit(4.0 / 3.0) * pairing.modulus * curvature.sqrt())
+                let curvature = radius / clearance * (radius + clearance);
+                Ok(4.0 / 3.0 * modulus * curvature.sqrt())
             }
             Self::Line { length } => {
                 let plane = plane(length)?;
-                logarithm(peak(pairing, plane)?, pairing.clearance)?;
+                logarithm(peak(config, plane)?, clearance)?;
                 Ok(plane)
             }
             Self::LinePower { length } => {
                 let plane = plane(length)?;
-                let mut secant = R::ONE;
+                let mut secant = 1.0;
                 for _ in 0..ITERATIONS {
-                    let peak = pairing.speed * (pairing.mass / (plane * secant)).sqrt();
-                    secant = logarithm(peak, pairing.clearance)? - R::ONE;
+                    let peak = config.fastest * (mass / (plane * secant)).sqrt();
+                    secant = logarithm(peak, clearance)? - 1.0;
                 }
                 Ok(plane / secant)
             }
@@ -202,56 +200,49 @@ impl Shape {
         }
     }
 
-    /// The depth at which the pairing's impact has come to rest; not for the step.
-    pub(super) fn deepest<R: Real>(self, pairing: &Pairing<R>, stiffness: R) -> R {
+    /// The depth at which the fastest impact has come to rest; not for the step.
+    pub(super) fn deepest(self, config: &HertzConfig, stiffness: f64) -> f64 {
+        let (rigid, speed) = (&config.rigid, config.fastest);
         if self == Self::Line {
             // `stiffness` has refused what has no peak.
-            let peak = peak(pairing, stiffness).unwrap_or(R::ZERO);
-            return self.depth(peak, pairing.clearance);
+            let peak = peak(config, stiffness).unwrap_or(0.0);
+            return self.depth(peak, rigid.clearance);
         }
-        let &Pairing { mass, speed, .. } = pairing;
-        let parts = self.parts(R::ZERO, R::ZERO);
-        let energy = R::HALF * parts * mass / stiffness * speed * speed;
+        let parts = self.parts(0.0, 0.0);
+        let energy = 0.5 * parts * rigid.mass / stiffness * speed * speed;
         let root = root(energy, self.twice_exponent() + 2);
         root * root
     }
 
     /// Duration of a contact without damping that comes to rest there, in units of deepest compression over entry speed.
-    pub(super) fn duration<R: Real>(self, deepest: R, power: R) -> R {
+    pub(super) fn duration(self, deepest: f64, power: f64) -> f64 {
         match self {
             // 2 times the integral of dx/sqrt(1 - x^2.5) from 0 to 1.
-            Self::Point => R::lit(2.943_275_278_886_26),
+            Self::Point => 2.943_275_278_886_26,
             Self::Line => duration_of_line(deepest / power),
-            Self::Spring => R::lit(core::f64::consts::PI),
+            Self::Spring => PI,
         }
     }
 }
 
 /// 2 times the integral of dd/v over the deepest, with F = F0 sin t and t = pi/2 s^2: smooth at both ends; `most` is l - 1 there.
-fn duration_of_line<R: Real>(most: R) -> R {
+fn duration_of_line(most: f64) -> f64 {
     const POINTS: i32 = 256;
-    let mut sum = R::ZERO;
+    let mut sum = 0.0;
     for k in 0..POINTS {
-        let s = (R::from_i32(k) + R::HALF) / R::from_i32(POINTS);
-        let quarter = R::lit(core::f64::consts::FRAC_PI_2);
-        let (sine, cosine) = (quarter * s * s).sin_cos();
-        let x = most - sine.ln();
-        let left = R::ONE - sine * sine * (x - R::HALF) / (most - R::HALF);
-        sum += s * (x - R::ONE) * cosine / left.sqrt();
+        let s = (f64::from(k) + 0.5) / f64::from(POINTS);
+        let (sine, cosine) = Real::sin_cos(FRAC_PI_2 * s * s);
+        let x = most - Real::ln(sine);
+        let left = 1.0 - sine * sine * (x - 0.5) / (most - 0.5);
+        sum += s * (x - 1.0) * cosine / left.sqrt();
     }
-    R::lit(2.0 * core::f64::consts::PI) * sum / (R::from_i32(POINTS) * most)
-}
-
-/// pi E* L, N/m.
-fn plane<R: Real>(length: R, pairing: &Pairing<R>) -> Result<R, ConfigError> {
-    positive("length", length)?;
-    Ok(R::lit(core::f64::consts::PI) * pairing.modulus * length)
+    2.0 * PI * sum / (f64::from(POINTS) * most)
 }
 
 /// l at this force over pi E* L.
-fn logarithm<R: Real>(power: R, gap: R) -> Result<R, ConfigError> {
-    let logarithm = (R::lit(4.0) * gap / power).ln();
-    if logarithm <= R::TWO || !logarithm.is_finite() {
+fn logarithm(power: f64, gap: f64) -> Result<f64, ConfigError> {
+    let logarithm = Real::ln(4.0 * gap / power);
+    if logarithm <= 2.0 || !logarithm.is_finite() {
         let rule = "long enough for the force of the fastest impact in this clearance";
         return Err(ConfigError::OutOfRange("length", rule));
     }
@@ -259,11 +250,11 @@ fn logarithm<R: Real>(power: R, gap: R) -> Result<R, ConfigError> {
 }
 
 /// Peak force over pi E* L, m: the energy F^2/(2 K) (l - 3/2) is m V^2/2.
-fn peak<R: Real>(pairing: &Pairing<R>, plane: R) -> Result<R, ConfigError> {
-    let spring = pairing.speed * (pairing.mass / plane).sqrt();
+fn peak(config: &HertzConfig, plane: f64) -> Result<f64, ConfigError> {
+    let spring = config.fastest * (config.rigid.mass / plane).sqrt();
     let mut peak = spring;
     for _ in 0..ITERATIONS {
-        let parts = logarithm(peak, pairing.clearance)? - R::lit(1.5);
+        let parts = logarithm(peak, config.rigid.clearance)? - 1.5;
         peak = spring / parts.sqrt();
     }
     Ok(peak)

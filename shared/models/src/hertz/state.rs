@@ -47,11 +47,6 @@ impl<R: Real> Touching<R> {
 }
 
 impl<R: Real> HertzState<R> {
-    /// Time since the release.
-    pub fn now(&self) -> Instant<R> {
-        self.now
-    }
-
     /// Times at which the rotor was so deep in the wall that the step was beyond the limit of
     /// stability; the impact law took the place of the force there.
     pub fn exceeded(&self) -> u32 {

@@ -34,7 +34,8 @@ impl<R: Precision> Moreau<R> {
         stretch: Stretch<R>,
         on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
-        let half = R::HALF * stretch.time;
+        let time = self.step * stretch.part;
+        let half = R::HALF * time;
         let turn = half * wall.tangential.value();
         let start = wall.cos;
         let chord = wall.turn(turn);
@@ -51,8 +52,8 @@ impl<R: Precision> Moreau<R> {
             self.tell(state, stretch.at(R::HALF), Change::LiftsOff, on_event);
             return;
         }
-        let pull = self.pull(turn, chord, [sin, cos], stretch.time);
-        let kick = self.kick(state.spin, speed, pull, cos, stretch.time);
+        let pull = self.pull(turn, chord, [sin, cos], time);
+        let kick = self.kick(state.spin, speed, pull, cos, time);
         wall.tangential.add(kick.tangential);
         match kick.spin {
             Some(spin) => state.spin.add(spin),

@@ -20,7 +20,8 @@ impl<R: Precision> Moreau<R> {
         stretch: Stretch<R>,
         on_event: &mut impl FnMut(ModelEvent<R>),
     ) {
-        let half = R::HALF * stretch.time;
+        let time = self.step * stretch.part;
+        let half = R::HALF * time;
         let [x, y] = flight.position.map(Sum::value);
         let [u, v] = flight.velocity.map(Sum::value);
         let pull = self.law.gravity * half;
@@ -35,7 +36,7 @@ impl<R: Precision> Moreau<R> {
             }
         }
         flight.velocity[1].add(-(pull + pull));
-        flight.position[0].add(stretch.time * u);
+        flight.position[0].add(time * u);
         flight.position[1].add(half * (v + flight.velocity[1].value()));
         state.motion = Motion::Flight(flight);
     }
@@ -85,7 +86,7 @@ impl<R: Precision> Moreau<R> {
             self.tell(state, middle, Change::ContactStarts, on_event);
             self.slide(state, wall, stretch.second_half(), on_event);
         } else {
-            let time = R::HALF * stretch.time;
+            let time = R::HALF * self.step * stretch.part;
             state.motion = Motion::Flight(from_wall(rest, away, time, law));
         }
     }

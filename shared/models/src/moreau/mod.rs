@@ -19,7 +19,6 @@ use touchdown_rotor::kinematics::{Change, Kinematics, ModelEvent};
 use touchdown_rotor::law::Law;
 use touchdown_rotor::precision::Precision;
 use touchdown_rotor::real::Real;
-use touchdown_rotor::scales::Scales;
 use touchdown_rotor::start::Start;
 use touchdown_rotor::stepper::Stepper;
 
@@ -29,14 +28,11 @@ pub struct Moreau<R> {
     law: Law<R>,
     /// Length of a step, T.
     step: R,
-    scales: Scales<R>,
 }
 
 /// A step, or a part of one.
 #[derive(Clone, Copy, Debug)]
 struct Stretch<R> {
-    /// T.
-    time: R,
     /// Where in the step it begins, steps.
     from: R,
     /// Its length, steps.
@@ -51,7 +47,6 @@ impl<R: Real> Stretch<R> {
 
     fn second_half(&self) -> Self {
         Self {
-            time: R::HALF * self.time,
             from: self.at(R::HALF),
             part: R::HALF * self.part,
         }
@@ -59,19 +54,13 @@ impl<R: Real> Stretch<R> {
 }
 
 impl<R: Precision> Moreau<R> {
-    /// Checks `config` and works out the coefficients.
-    pub fn try_new(config: &RigidConfig<R>) -> Result<Self, ConfigError> {
+    /// Checks `config` and works out the coefficients, each rounded once.
+    pub fn try_new(config: &RigidConfig<f64>) -> Result<Self, ConfigError> {
         let (law, scales) = config.scaled()?;
         Ok(Self {
-            law,
-            step: config.step / scales.time,
-            scales,
+            law: law.rounded(),
+            step: R::lit(config.step / scales.time),
         })
-    }
-
-    /// The model's units.
-    pub fn scales(&self) -> &Scales<R> {
-        &self.scales
     }
 
     /// Tells of `change`, `part` of a step after the step's start.
@@ -87,17 +76,6 @@ impl<R: Precision> Moreau<R> {
             change,
             after: self.kinematics(state),
         });
-    }
-}
-
-impl Moreau<f64> {
-    /// The same model with every coefficient rounded once.
-    pub fn rounded<R: Real>(&self) -> Moreau<R> {
-        Moreau {
-            law: self.law.rounded(),
-            step: R::lit(self.step),
-            scales: self.scales.rounded(),
-        }
     }
 }
 
@@ -130,7 +108,6 @@ impl<R: Precision> Stepper<R> for Moreau<R> {
         mut on_event: impl FnMut(ModelEvent<R>),
     ) {
         let stretch = Stretch {
-            time: self.step * fraction,
             from: R::ZERO,
             part: fraction,
         };

@@ -95,11 +95,6 @@ impl<R: Real> MoreauState<R> {
         }
     }
 
-    /// Time since the release, in whole steps.
-    pub fn now(&self) -> Instant<R> {
-        Instant::at_tick(self.tick)
-    }
-
     /// `part` of a step after the present step's start.
     pub(super) fn in_step(&self, part: R) -> Instant<R> {
         Instant {
