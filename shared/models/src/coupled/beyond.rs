@@ -96,7 +96,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
                 kick: at(&ring.shape, &passage.kick) - ring_kick,
                 radius: ring.limit,
             });
-            let travel = ring.mount.as_ref().and_then(|mount| mount.travel());
+            let travel = ring.mount.as_ref().and_then(|mount| mount.travel);
             let travel = travel.filter(|_| !state.is_stopped(i));
             let stop = travel.map(|radius| Flyer {
                 who: Arrival::Ring(i),

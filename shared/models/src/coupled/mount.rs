@@ -187,14 +187,6 @@ struct AxisSpring<R> {
     braced: R,
 }
 
-/// What ends the ring's way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum StopLaw<R> {
-    /// After this way.
-    Rigid(R),
-    Gives(Compliant<R>),
-}
-
 /// A ring on a spring and a damper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sprung<R> {
@@ -205,7 +197,10 @@ pub(super) struct Sprung<R> {
     vertical: Option<AxisSpring<R>>,
     /// Over the rotor's mass.
     friction: R,
-    stop: Option<StopLaw<R>>,
+    /// From rest to the stop, where that is rigid.
+    pub(super) travel: Option<R>,
+    /// The stop, where that gives way.
+    pub(super) soft_stop: Option<Compliant<R>>,
 }
 
 /// The ring's motion, and what the support has taken.
@@ -240,18 +235,19 @@ impl<R: Precision> Sprung<R> {
                 braced: R::lit(braced),
             })
         };
-        let stop = |it: &StopConfig| {
-            let travel = it.travel / units.scales.length;
-            let spring = |it| Compliant::spring(it / units.mass * time * time, travel);
-            let rigid = StopLaw::Rigid(R::lit(travel));
-            it.stiffness.map_or(rigid, |it| StopLaw::Gives(spring(it)))
+        let way = |it: &StopConfig| it.travel / units.scales.length;
+        let rigid = config.stop.filter(|it| it.stiffness.is_none());
+        let spring = |it: &StopConfig| {
+            let stiffness = it.stiffness? / units.mass * time * time;
+            Some(Compliant::spring(stiffness, way(it)))
         };
         Ok(Self {
             mass: R::lit(mass),
             across: axis([config.stiffness, config.damping])?,
             vertical: config.vertical.map(axis).transpose()?,
             friction: R::lit(config.friction / units.mass * time / units.scales.speed),
-            stop: config.stop.as_ref().map(stop),
+            travel: rigid.map(|it| R::lit(way(&it))),
+            soft_stop: config.stop.as_ref().and_then(spring),
         })
     }
 
@@ -321,7 +317,7 @@ impl<R: Precision> Sprung<R> {
         let middle = place + moved.times(R::HALF);
         let mut against = self.against(end, none, shaken);
         let mut taken = -self.against(middle, none, shaken).dot(moved);
-        if let Some(stop) = self.soft_stop() {
+        if let Some(stop) = &self.soft_stop {
             against = against + end.times(stop.pull(end));
             taken -= stop.stored(end) - stop.stored(place);
         }
@@ -390,22 +386,6 @@ impl<R: Precision> Sprung<R> {
                 let now = direction(moved)?;
                 ((now - was).square() > R::EPSILON).then_some(Rub::Slides(now))
             }
-        }
-    }
-
-    /// From rest to the stop, where that is rigid.
-    pub(super) fn travel(&self) -> Option<R> {
-        match self.stop {
-            Some(StopLaw::Rigid(travel)) => Some(travel),
-            _ => None,
-        }
-    }
-
-    /// The stop, where that gives way.
-    pub(super) fn soft_stop(&self) -> Option<&Compliant<R>> {
-        match &self.stop {
-            Some(StopLaw::Gives(stop)) => Some(stop),
-            _ => None,
         }
     }
 
@@ -478,10 +458,10 @@ impl<R: Precision> Sprung<R> {
             state.velocity.add(ride.kick + pushes.times(rate));
             let damped = mean.dot_along(moved, self.each(|it| it.damping));
             state.damped.add(damped);
-            if self.stop.is_some() {
+            if self.travel.is_some() || self.soft_stop.is_some() {
                 stopping = by_stop.dot_along(mean, ride.mobility.map(|it| rate / it));
             }
-            if let Some(stop) = self.soft_stop() {
+            if let Some(stop) = &self.soft_stop {
                 stopping += stop.stored(state.place.value()) - stop.stored(before);
             }
         }
@@ -494,7 +474,7 @@ impl<R: Precision> Sprung<R> {
 
     /// Puts the ring onto its stop, where it is not but for rounding.
     pub(super) fn seat(&self, state: &mut SprungState<R>) {
-        let Some(travel) = self.travel() else {
+        let Some(travel) = self.travel else {
             return;
         };
         let place = state.place.value();
@@ -513,7 +493,8 @@ impl<R: Precision> Sprung<R> {
     /// Kinetic, in spring and stop; taken by support and stop.
     pub(super) fn energy(&self, state: &SprungState<R>) -> [R; 4] {
         let place = state.place.value();
-        let in_stop = self.soft_stop().map_or(R::ZERO, |it| it.stored(place));
+        let in_stop = self.soft_stop.as_ref();
+        let in_stop = in_stop.map_or(R::ZERO, |it| it.stored(place));
         [
             R::HALF * self.mass * state.velocity.value().square(),
             R::HALF * place.dot_along(place, self.each(|it| it.stiffness)) + in_stop,

@@ -4,6 +4,8 @@
 //! stretch asks for them, again and again; where that gains little, as for a light ring between rotor and stop, by
 //! Broyden's method (Broyden, "A class of methods for solving nonlinear simultaneous equations", 1965).
 
+use core::array::from_fn;
+
 use super::links::{Links, contact, stop};
 use super::passage::REACH;
 use super::vector::Vector;
@@ -65,14 +67,13 @@ impl<R: Real> Search<R> {
             return None;
         }
         let mut inverse = self.inverse.unwrap_or_else(|| {
-            let one = |i| core::array::from_fn(|j| if i == j { R::ONE } else { R::ZERO });
-            core::array::from_fn(one)
+            let one = |i| from_fn(|j| if i == j { R::ONE } else { R::ZERO });
+            from_fn(one)
         });
-        let changed: Angles<R> = core::array::from_fn(|i| off[i] - self.off[i]);
-        let told: Angles<R> = core::array::from_fn(|i| dot(&inverse[i], &changed));
-        let weight: Angles<R> = core::array::from_fn(|j| {
-            (0..MOST).fold(R::ZERO, |sum, i| sum + self.turn[i] * inverse[i][j])
-        });
+        let changed: Angles<R> = from_fn(|i| off[i] - self.off[i]);
+        let told: Angles<R> = from_fn(|i| dot(&inverse[i], &changed));
+        let weight: Angles<R> =
+            from_fn(|j| (0..MOST).fold(R::ZERO, |sum, i| sum + self.turn[i] * inverse[i][j]));
         let size = dot(&self.turn, &told);
         if size != R::ZERO {
             for (i, row) in inverse.iter_mut().enumerate() {
@@ -82,7 +83,7 @@ impl<R: Real> Search<R> {
                 }
             }
         }
-        let turn = core::array::from_fn(|i| dot(&inverse[i], &off).within(R::lit(REACH)));
+        let turn = from_fn(|i| dot(&inverse[i], &off).within(R::lit(REACH)));
         *self = Self {
             off,
             turn,
@@ -101,10 +102,8 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
         time: R,
     ) -> bool {
         let half = R::HALF * time;
-        let surfaces: [R; N] = core::array::from_fn(|i| {
-            let link = links.get(contact(i));
-            link.map_or(R::ZERO, |link| link.surface)
-        });
+        let surface = |i| links.get(contact(i)).map_or(R::ZERO, |it| it.surface);
+        let surfaces: [R; N] = from_fn(surface);
         let mut search = Search::new();
         let (mut changed, mut farthest) = (R::INFINITY, R::INFINITY);
         for _ in 0..NORMALS {
@@ -163,7 +162,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     fn linearize_all(&self, state: &CoupledState<R, N, Q>, links: &mut Links<R, N>, time: R) -> R {
         let mut most = R::ZERO;
         for (i, ring) in self.rings.iter().enumerate() {
-            let soft = ring.mount.as_ref().and_then(|it| it.soft_stop());
+            let soft = ring.mount.as_ref().and_then(|it| it.soft_stop.as_ref());
             if let Some(soft) = soft
                 && links.get(stop(i)).is_some()
             {

@@ -314,7 +314,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// The stop that gives way of a ring that dry friction does not hold.
     fn soft_stop(&self, free: &Passage<R, N, Q>, i: usize) -> Option<&Compliant<R>> {
         let mount = self.rings[i].mount.as_ref()?;
-        mount.soft_stop().filter(|_| !free.rides[i].rests())
+        mount.soft_stop.as_ref().filter(|_| !free.rides[i].rests())
     }
 
     /// The same, where the ring may press on it.

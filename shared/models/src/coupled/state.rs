@@ -343,7 +343,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
 
     /// A ring's way beyond its hard stop, rho0; below 0 before it, none without a stop.
     pub fn beyond_stop(&self, state: &CoupledState<R, N, Q>, ring: usize) -> Option<R> {
-        let travel = self.rings[ring].mount?.travel()?;
+        let travel = self.rings[ring].mount?.travel?;
         Some(state.ring_place(ring).length() - travel)
     }
 

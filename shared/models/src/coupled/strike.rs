@@ -129,7 +129,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
             outward = within.dot(self.relative(state, i)) / within.length();
             touches = held || arrives || outward >= R::ZERO;
         }
-        let travel = ring.mount.and_then(|mount| mount.travel());
+        let travel = ring.mount.and_then(|mount| mount.travel);
         let at_stop =
             travel.is_some_and(|it| state.ring_place(i).square() >= (R::ONE - on_wall()) * it * it);
         Meeting {
@@ -145,7 +145,7 @@ impl<R: Precision, const N: usize, const Q: usize> Coupled<R, N, Q> {
     /// A ring that is struck towards its stop, near to it, is at rest there, where the axis closes on it then.
     fn back(&self, state: &mut CoupledState<R, N, Q>, i: usize, meeting: &mut Meeting<R>) {
         let ring = &self.rings[i];
-        let Some((mount, travel)) = ring.mount.and_then(|it| Some((it, it.travel()?))) else {
+        let Some((mount, travel)) = ring.mount.and_then(|it| Some((it, it.travel?))) else {
             return;
         };
         let (within, place) = (self.within(state, i), state.ring_place(i));
