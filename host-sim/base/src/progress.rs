@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 /// A run shorter than this shows nothing.
 const QUIET: Duration = Duration::from_secs(2);
@@ -59,22 +59,17 @@ impl Progress {
     }
 }
 
-/// A bar of `total` parts; draws on a terminal only.
+/// A bar of `total` parts, until it is dropped; draws on a terminal only.
 pub fn bar(what: &'static str, total: u64) -> ProgressBar {
     styled(what, total, JOBS)
 }
 
 fn styled(what: &'static str, total: u64, style: &str) -> ProgressBar {
-    if total == 0 {
-        return ProgressBar::new_spinner().with_message(what);
-    }
-    let style =
-        ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(total).with_style(style).with_message(what)
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
+    let bar = if total == 0 {
+        ProgressBar::new_spinner()
+    } else {
+        let style = ProgressStyle::with_template(style);
+        ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    };
+    bar.with_message(what).with_finish(ProgressFinish::AndClear)
 }

@@ -1,7 +1,7 @@
 //! Wilson's interval for a probability, from a count.
 
 /// Quantile of the normal distribution for 95 % between both ends.
-const QUANTILE: f64 = 1.959_963_984_540_054;
+pub const QUANTILE: f64 = 1.959_963_984_540_054;
 
 /// The 95 % interval for the probability of what came `hits` times in `trials` (above 0).
 pub fn interval(hits: u64, trials: u64) -> (f64, f64) {

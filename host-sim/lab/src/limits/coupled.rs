@@ -29,11 +29,15 @@ const AFTER: f64 = 20e-6;
 /// is of second order. Chosen. A mode of bending turns late by (W h)^2/12 of its angle W t.
 const OFF: f64 = 4.0;
 
+/// Of an extreme, s.
+const DURATION: f64 = 0.03;
+
 /// All measures of all extremes.
 pub fn rows() -> Result<Vec<Row>, Failure> {
     let scenes = support::scenes()?.into_iter().chain(two_plane::scenes()?);
     let mut rows = Vec::new();
-    for (name, scene) in scenes {
+    for (name, mut scene) in scenes {
+        scene.run.duration = DURATION;
         for precision in super::PRECISIONS {
             rows.extend(of(name, &scene, precision).map_err(refused)?);
         }

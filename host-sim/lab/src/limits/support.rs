@@ -7,9 +7,6 @@ use touchdown_base::input_error::InputError;
 use touchdown_models::RaceConfig;
 use touchdown_scene::{BallBearing, Model, Scene, Stop, Support};
 
-/// Longest part of a scene, s.
-const LONGEST: f64 = 0.03;
-
 type Change = fn(&mut Scene);
 
 /// Name, and what differs from the rig on the support of the scene `soft-support`.
@@ -100,7 +97,6 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
             support: soft.support,
             ..rig.clone()
         };
-        scene.run.duration = LONGEST;
         change(&mut scene);
         (*name, scene)
     });

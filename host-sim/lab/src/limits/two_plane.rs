@@ -5,8 +5,6 @@ use std::f64::consts::TAU;
 use touchdown_base::input_error::InputError;
 use touchdown_scene::{Magnet, Retainer, Scene, TwoPlane};
 
-/// Longest part of a scene, s.
-const LONGEST: f64 = 0.03;
 type Change = fn(&mut Scene, &mut TwoPlane);
 
 /// Name, and what differs from the scene `two-plane`.
@@ -92,7 +90,6 @@ pub fn scenes() -> Result<Vec<(&'static str, Scene)>, InputError> {
     let rig = Scene::load("two-plane")?;
     let made = EXTREMES.iter().map(|(name, change)| {
         let mut scene = rig.clone();
-        scene.run.duration = LONGEST;
         if let Some(mut machine) = scene.two_plane.take() {
             change(&mut scene, &mut machine);
             scene.two_plane = Some(machine);

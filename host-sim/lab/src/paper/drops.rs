@@ -87,8 +87,7 @@ const CONDITIONS: [(f64, f64, f64, f64, u64); 11] = [
 /// Drops `base` as each condition says, `drops` times.
 pub fn tally(base: &Scene, drops: u32) -> Result<Vec<Tally>, Failure> {
     let progress = progress::bar("drops", u64::from(drops) * CONDITIONS.len() as u64);
-    let conditions = CONDITIONS.into_iter();
-    let tallies = conditions.map(|(clearance_m, friction, restitution, fastest, seed)| {
+    let counted = |(clearance_m, friction, restitution, fastest, seed)| {
         let condition = Condition {
             clearance_m,
             friction,
@@ -97,10 +96,8 @@ pub fn tally(base: &Scene, drops: u32) -> Result<Vec<Tally>, Failure> {
             seed,
         };
         count(base, condition, drops, &progress)
-    });
-    let tallies = tallies.collect();
-    progress.finish_and_clear();
-    tallies
+    };
+    CONDITIONS.into_iter().map(counted).collect()
 }
 
 fn count(

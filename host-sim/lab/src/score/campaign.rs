@@ -16,7 +16,7 @@ pub fn map<C: Sync, T: Send>(
     job: impl Fn(&C, ChaCha8Rng) -> Result<T, Failure> + Sync,
 ) -> Result<Vec<Vec<T>>, Failure> {
     let progress = progress::bar(what, cases.len() as u64 * plan.seeds);
-    let done = cases.par_iter().enumerate().map(|(number, case)| {
+    let of_case = |(number, case)| {
         let seeded = (0..plan.seeds).into_par_iter().map(|index| {
             let mut random = ChaCha8Rng::seed_from_u64(plan.first_seed.wrapping_add(index));
             random.set_stream(number as u64);
@@ -24,9 +24,7 @@ pub fn map<C: Sync, T: Send>(
             progress.inc(1);
             done
         });
-        seeded.collect::<Result<Vec<T>, Failure>>()
-    });
-    let done = done.collect();
-    progress.finish_and_clear();
-    done
+        seeded.collect()
+    };
+    cases.par_iter().enumerate().map(of_case).collect()
 }

@@ -125,10 +125,9 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
         .collect()
 }
 
-/// What was seen of impacts that have to be found.
+/// What was seen of a drop's impacts that have to be found.
 #[derive(Clone, Debug, Default)]
 struct Seen {
-    drops: usize,
     /// All of them.
     impacts: usize,
     /// Others with such a jump, which cannot be told from lying on the wall, and how many of these were found.
@@ -143,19 +142,6 @@ struct Seen {
     invented: usize,
 }
 
-impl Seen {
-    fn take(&mut self, other: &Self) {
-        self.drops += other.drops;
-        self.impacts += other.impacts;
-        self.hidden[0] += other.hidden[0];
-        self.hidden[1] += other.hidden[1];
-        self.dated.extend(&other.dated);
-        self.measured.extend(&other.measured);
-        self.late.extend(&other.late);
-        self.invented += other.invented;
-    }
-}
-
 fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let (truth, events) = (&watched.truth, &watched.detection.events);
@@ -163,7 +149,6 @@ fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
     let false_events = matches.false_events.iter();
     let variance = bound::variance(&drop.scene.sensors);
     let mut seen = Seen {
-        drops: 1,
         invented: false_events
             .filter(|it| events[**it].declared_s >= 0.0)
             .count(),
@@ -223,10 +208,12 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (cases, drops) in cases.chunks(JUDGED).zip(drops.chunks(JUDGED)) {
-        let (name, mut all) = (cases[0].name(), Seen::default());
-        drops.iter().flatten().for_each(|it| all.take(it));
-        rows.extend(judged(&name, &all));
-        curves.push(Curve::new(name, histogram(&all.late, 0.1, 5.0)));
+        let (name, seen) = (cases[0].name(), drops.concat());
+        rows.extend(judged(&name, &seen));
+        curves.push(Curve::new(
+            name,
+            histogram(&all(&seen, |it| &it.late), 0.1, 5.0),
+        ));
     }
     let figures = vec![Figure::Curves(Curves {
         title: "Latency of an impact over the bound for its jump",
@@ -238,10 +225,19 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     Ok(Findings { rows, figures })
 }
 
-fn judged(name: &str, seen: &Seen) -> [Row; 6] {
-    let (found, drops) = (seen.dated.len(), seen.drops);
-    let mut note = format!("{found} of {} in {drops} drops", seen.impacts);
-    let [hidden, others] = seen.hidden;
+/// Of all drops.
+fn all(seen: &[Seen], of: fn(&Seen) -> &Vec<f64>) -> Vec<f64> {
+    seen.iter().flat_map(of).copied().collect()
+}
+
+fn judged(name: &str, seen: &[Seen]) -> [Row; 6] {
+    let sum = |of: fn(&Seen) -> usize| seen.iter().map(of).sum::<usize>();
+    let [impacts, invented] = [sum(|it| it.impacts), sum(|it| it.invented)];
+    let [hidden, others] = [sum(|it| it.hidden[0]), sum(|it| it.hidden[1])];
+    let [dated, measured] = [all(seen, |it| &it.dated), all(seen, |it| &it.measured)];
+    let late = all(seen, |it| &it.late);
+    let (found, drops) = (dated.len(), seen.len());
+    let mut note = format!("{found} of {impacts} in {drops} drops");
     if hidden > 0 {
         note += &format!("; {others} of {hidden} that noise hides");
     }
@@ -249,19 +245,19 @@ fn judged(name: &str, seen: &Seen) -> [Row; 6] {
         Row::quantile_at_most(name, quantity, values, p, target)
     };
     [
-        Row::at_least(name, "found_share", share(found, seen.impacts), FOUND)
-            .of(seen.impacts)
+        Row::at_least(name, "found_share", share(found, impacts), FOUND)
+            .of(impacts)
             .with("drops", drops)
-            .with("impacts", seen.impacts)
+            .with("impacts", impacts)
             .with("found", found)
-            .with("hidden", seen.hidden[0])
-            .with("hidden_found", seen.hidden[1])
+            .with("hidden", hidden)
+            .with("hidden_found", others)
             .noted(note),
-        quantiles("onset_error_median_samples", &seen.dated, 0.5, DATED[0]),
-        quantiles("onset_error_p999_samples", &seen.dated, 0.999, DATED[1]),
-        quantiles("speed_error_p99", &seen.measured, 0.99, MEASURED)
-            .with("speed_error_median", median(&seen.measured)),
-        quantiles("ratio", &seen.late, 0.5, LATE).with("ratio_p99", quantile(&seen.late, 0.99)),
-        Row::at_most(name, "invented", seen.invented as f64, 0.0).with("drops", drops),
+        quantiles("onset_error_median_samples", &dated, 0.5, DATED[0]),
+        quantiles("onset_error_p999_samples", &dated, 0.999, DATED[1]),
+        quantiles("speed_error_p99", &measured, 0.99, MEASURED)
+            .with("speed_error_median", median(&measured)),
+        quantiles("ratio", &late, 0.5, LATE).with("ratio_p99", quantile(&late, 0.99)),
+        Row::at_most(name, "invented", invented as f64, 0.0).with("drops", drops),
     ]
 }

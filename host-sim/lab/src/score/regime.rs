@@ -195,19 +195,15 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     }
     let all = || drops.iter().flatten();
     let turns: Vec<f64> = all().flat_map(|it| it.turns.clone()).collect();
+    let (whirls, middle) = (turns.len(), median(&turns));
     rows.push(
         Row::quantile_at_most("backward whirl declared", "turns_p99", &turns, 0.99, TURNS)
-            .with("whirls", turns.len())
-            .with("turns_median", median(&turns))
-            .noted(format!(
-                "{} whirls, median {:.3}",
-                turns.len(),
-                median(&turns)
-            )),
+            .with("whirls", whirls)
+            .with("turns_median", middle)
+            .noted(format!("{whirls} whirls, median {middle:.3}")),
     );
-    let told = all().map(|it| it.wrong_signs.len()).sum();
-    let wrong = all().flat_map(|it| &it.wrong_signs).filter(|it| **it);
-    let wrong = wrong.count();
+    let signs: Vec<bool> = all().flat_map(|it| it.wrong_signs.clone()).collect();
+    let (told, wrong) = (signs.len(), signs.iter().filter(|it| **it).count());
     let (_, upper) = interval(share(wrong, told), told);
     rows.push(
         Row::at_most("sign of a whirl", "wrong_signs", wrong as f64, 0.0)

@@ -256,15 +256,14 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 
 fn named(name: &str, drops: &[Seen], false_faults: usize) -> Row {
     let ages: Vec<f64> = drops.iter().filter_map(|it| it.age).collect();
+    let (middle, late) = (median(&ages), quantile(&ages, 0.99));
     Row::at_least(name, "named_share", share(ages.len(), drops.len()), NAMED)
         .of(drops.len())
         .with("drops", drops.len())
-        .with("samples_median", median(&ages))
-        .with("samples_p99", quantile(&ages, 0.99))
+        .with("samples_median", middle)
+        .with("samples_p99", late)
         .with("further_faults", false_faults)
         .noted(format!(
-            "after {:.0} samples (median), {:.0} (99 %)",
-            median(&ages),
-            quantile(&ages, 0.99)
+            "after {middle:.0} samples (median), {late:.0} (99 %)"
         ))
 }

@@ -133,16 +133,13 @@ pub(super) fn run(plan: &Plan) -> Result<Findings, Failure> {
     })?;
     let row = |(k, (case, quantity, target))| {
         let errors: Vec<f64> = drops.iter().flatten().filter_map(|it| it[k]).collect();
+        let (count, middle, worst) = (errors.len(), median(&errors), quantile(&errors, 1.0));
+        let note = format!("{count} drops, median {middle:.2e}, worst {worst:.2e}");
         Row::quantile_at_most(case, quantity, &errors, NINE_IN_TEN, target)
-            .with("drops", errors.len())
-            .with("error_median", median(&errors))
-            .with("error_worst", quantile(&errors, 1.0))
-            .noted(format!(
-                "{} drops, median {:.2e}, worst {:.2e}",
-                errors.len(),
-                median(&errors),
-                quantile(&errors, 1.0)
-            ))
+            .with("drops", count)
+            .with("error_median", middle)
+            .with("error_worst", worst)
+            .noted(note)
     };
     Ok(MEASURES.into_iter().enumerate().map(row).collect())
 }

@@ -22,7 +22,7 @@ use pace::Pace;
 use parts::Worth;
 use touchdown_base::history::History;
 use touchdown_base::progress;
-use touchdown_run::fidelity::combination::{self, first_second, with};
+use touchdown_run::fidelity::combination::{self, first_second, per_step, with};
 use touchdown_run::model;
 use touchdown_scene::{Fidelity, Math, Model, Precision, Scene, Scheme};
 
@@ -98,7 +98,7 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Trade {
 fn once(scene: &Scene, truth: &History) -> Option<Row> {
     let begin = Instant::now();
     let history = model::simulate(scene).ok()?;
-    let pace = Pace::of(scene, begin.elapsed());
+    let pace = Pace::of(scene, begin.elapsed(), per_step(scene));
     let model = scene.model;
     Some(Row {
         rung: model.rung,

@@ -7,7 +7,6 @@ use serde::Serialize;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::{ModelEvent, Precision, Stepper};
 
-use touchdown_run::fidelity::combination::per_step;
 use touchdown_run::model::{Subject, Use, with_model};
 use touchdown_scene::Scene;
 
@@ -26,13 +25,13 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Of the scene's model, which took so long for the run.
-    pub fn of(scene: &Scene, whole: Duration) -> Self {
+    /// Of the scene's model, which took so long for the run, with the instructions of its steps.
+    pub fn of(scene: &Scene, whole: Duration, instructions: Option<f64>) -> Self {
         let ns_per_step = whole.as_secs_f64() * 1e9 / steps(scene);
         Self {
             ns_per_step,
             seconds_per_simulated_second: ns_per_step * 1e-9 / scene.model.step,
-            mcu_instructions_per_step: per_step(scene),
+            mcu_instructions_per_step: instructions,
         }
     }
 
@@ -44,12 +43,7 @@ impl Pace {
         while best < ENOUGH && begin.elapsed() < ENOUGH {
             best = best.min(with_model(scene, Timed(steps as u64))?);
         }
-        let ns_per_step = best.as_secs_f64() * 1e9 / steps;
-        Ok(Self {
-            ns_per_step,
-            seconds_per_simulated_second: ns_per_step * 1e-9 / scene.model.step,
-            ..self
-        })
+        Ok(Self::of(scene, best, self.mcu_instructions_per_step))
     }
 }
 

@@ -5,10 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use super::quantity::QUANTITIES;
+use touchdown_base::wilson::QUANTILE;
 use touchdown_chart::text::si;
 
-/// Quantile of the normal distribution for 95 % between both ends.
-const QUANTILE: f64 = 1.959_963_984_540_054;
 const RESAMPLED: usize = 2_000;
 /// Of a mean: machines that move alike differ by less.
 const ROUNDING: f64 = 1e-9;

@@ -87,7 +87,6 @@ pub fn run(scene: &Scene, drops: Option<usize>) -> Worth {
         work += some.iter().flatten().map(|it| it.work).sum::<f64>();
         all.extend(some);
     }
-    progress.finish_and_clear();
     let seconds = |machine: usize| all.iter().map(|it| it[machine].seconds).sum::<f64>();
     let omission = |(machine, part): (usize, &Removable)| Omission {
         part: part.into(),
