@@ -3,9 +3,7 @@
 use serde::Deserialize;
 use touchdown_models::BaseConfig;
 
-use super::diagnostic::Diagnostic;
-use super::limits;
-use super::rule::{Keys, MILLI, exactly};
+use super::rule::{MILLI, exactly};
 
 /// A base that goes to and fro: by its amplitude times the cosine of an angle.
 pub type Base = BaseConfig;
@@ -20,16 +18,12 @@ pub(super) struct BaseTable {
     phase_deg: f64,
 }
 
-impl BaseTable {
-    pub fn check(&self) -> Result<Base, Diagnostic> {
-        const KEYS: Keys = Keys("base");
-        let amplitude = KEYS.each("amplitude_mm", self.amplitude_mm, limits::BASE_MM)?;
-        let frequency = KEYS.between("frequency_hz", self.frequency_hz, limits::BASE_HZ)?;
-        let phase = KEYS.between("phase_deg", self.phase_deg, limits::ANGLE_DEG)?;
-        Ok(Base {
-            amplitude: amplitude.map(|it| MILLI * it),
-            rate: std::f64::consts::TAU * frequency,
-            phase: phase.to_radians(),
-        })
+impl From<&BaseTable> for Base {
+    fn from(table: &BaseTable) -> Self {
+        Self {
+            amplitude: table.amplitude_mm.map(|it| MILLI * it),
+            rate: std::f64::consts::TAU * table.frequency_hz,
+            phase: table.phase_deg.to_radians(),
+        }
     }
 }

@@ -3,25 +3,26 @@
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::Monitor;
 
-use super::base::BaseTable;
 use super::calibration::CalibrationTable;
 use super::diagnostic::Diagnostic;
 use super::faults::faults;
-use super::file::{RunTable, SceneFile, StatorTable};
-use super::machine::{retainer, rotor, start};
+use super::file::{RunTable, SceneFile};
+use super::machine::{rotor, start};
 use super::materials::materials;
 use super::model::model;
 use super::outputs::auto;
 use super::rule::{Keys, MICRO, MILLI, translate};
 use super::scales;
-use super::support::{BallBearingTable, SupportTable};
-use super::{BallBearing, Fidelity, Retainer, Rotor, Run, Scene, Start, Support, TwoPlane, limits};
+use super::support::SupportTable;
+use super::{
+    BallBearing, Base, Fidelity, Retainer, Rotor, Run, Scene, Start, Support, TwoPlane, limits,
+};
 use crate::sensors::{SensorsConfig, Tachometers};
 use touchdown_base::plain::Number;
 
 pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let rotor = rotor(&file.rotor)?;
-    let retainer = retainer(&file.retainer)?;
+    let retainer = Retainer::from(&file.retainer);
     // The rings of a rotor that tilts are looked at below.
     let clearance = match file.two_plane {
         Some(_) => f64::INFINITY,
@@ -30,8 +31,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
     let start = start(&file.start, clearance)?;
     let run = run(&file.run)?;
     let support = file.support.as_ref().map(SupportTable::check).transpose()?;
-    let ball_bearing = file.ball_bearing.as_ref();
-    let ball_bearing = ball_bearing.map(BallBearingTable::check).transpose()?;
+    let ball_bearing = file.ball_bearing.as_ref().map(BallBearing::from);
     // Marks are seen on the ring of one plane only.
     let plane = ball_bearing.filter(|_| file.two_plane.is_none());
     let tachometers = plane.and_then(|it| it.tachometers(rotor.radius + retainer.clearance));
@@ -49,7 +49,7 @@ pub(super) fn scene(name: &str, file: SceneFile) -> Result<Scene, Diagnostic> {
         source: file.source,
         rotor,
         retainer,
-        stator_gap: stator_gap(file.stator.as_ref())?,
+        stator_gap: file.stator.map(|it| MILLI * it.gap_mm),
         support,
         ball_bearing,
         two_plane,
@@ -92,12 +92,6 @@ fn sensors(
     };
     sensors.check().map_err(|error| translate(&error))?;
     Ok(sensors)
-}
-
-/// Radial, m.
-fn stator_gap(table: Option<&StatorTable>) -> Result<Option<f64>, Diagnostic> {
-    let gap = |it: &StatorTable| Keys("stator").between("gap_mm", it.gap_mm, limits::CLEARANCE_MM);
-    Ok(table.map(gap).transpose()?.map(|gap| MILLI * gap))
 }
 
 /// The step of a contact that takes time: as asked for if that is stable, else a whole part of a sample
@@ -149,37 +143,33 @@ const STANDARD_GRAVITY: f64 = 9.81;
 const USUAL_RATE: f64 = 20_000.0;
 
 fn run(table: &RunTable) -> Result<Run, Diagnostic> {
-    let duration = RUN.above_zero("duration_s", table.duration_s)?;
+    let duration = table.duration_s;
     if duration > 86_400.0 {
         let duration = Number(duration);
         let rule = format!("duration_s must be no more than 86400, is {duration}");
         return Err(RUN.broken("duration_s", rule));
     }
     let gravity = gravity(table.gravity_m_s2.unwrap_or(STANDARD_GRAVITY))?;
-    let inclination = table.inclination_deg;
-    let inclination = RUN.between("inclination_deg", inclination, limits::INCLINATION_DEG)?;
-    let rate = table.sample_rate_hz.unwrap_or(USUAL_RATE);
-    let across = gravity * inclination.to_radians().cos();
+    let across = gravity * table.inclination_deg.to_radians().cos();
     // A vertical axis leaves rounding only.
     let pulls = across >= limits::LEAST_GRAVITY_M_S2;
     let gravity = if pulls { across } else { 0.0 };
     Ok(Run {
         duration,
         gravity,
-        sample_rate: RUN.between("sample_rate_hz", rate, 100.0..=200_000.0)?,
+        sample_rate: table.sample_rate_hz.unwrap_or(USUAL_RATE),
         seed: table.seed.unwrap_or(1),
     })
 }
 
-/// Gravity, m/s^2.
-pub fn gravity(given: f64) -> Result<f64, Diagnostic> {
-    let gravity = RUN.zero_or_more("gravity_m_s2", given)?;
+/// Gravity, m/s^2, within its limits: too little is none.
+pub fn gravity(gravity: f64) -> Result<f64, Diagnostic> {
     if gravity > 0.0 && gravity < limits::LEAST_GRAVITY_M_S2 {
         let [least, is] = [limits::LEAST_GRAVITY_M_S2, gravity].map(Number);
         let rule = format!("gravity_m_s2 must be 0, or {least} or more, is {is}");
         return Err(RUN.broken("gravity_m_s2", rule));
     }
-    RUN.between("gravity_m_s2", gravity, limits::GRAVITY_M_S2)
+    Ok(gravity)
 }
 
 /// Whether contacts are to have a force and a duration; what only such have must not stand without it.
@@ -256,7 +246,7 @@ fn two_plane(
     };
     let (rings, magnets, modes) = (&file.ring, &file.magnet, &file.mode);
     let mut two_plane = table.check(rotor, retainer, rings, magnets, modes)?;
-    two_plane.base = file.base.as_ref().map(BaseTable::check).transpose()?;
+    two_plane.base = file.base.as_ref().map(Base::from);
     for ring in &mut two_plane.rings {
         ring.support = ring.support.or(support);
         ring.ball_bearing = ring.ball_bearing.or(ball_bearing);

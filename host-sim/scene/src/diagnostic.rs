@@ -2,7 +2,11 @@
 
 use std::ops::Range;
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use touchdown_base::plain::Number;
+
+use super::limits::Limit;
 
 /// A key that breaks a rule.
 #[derive(Debug)]
@@ -53,31 +57,47 @@ impl Diagnostic {
     }
 }
 
-/// The first number of the text that is not finite: its key and its place.
-pub(super) fn not_finite(text: &str) -> Option<(String, Range<usize>)> {
+/// A rule that a number breaks, and its place.
+type Broken = (String, Range<usize>);
+/// Limits of the numbers of a key in a table.
+pub type Limits = fn(&str, &str) -> Option<Limit>;
+
+/// The first number of the text that is not finite or beyond its limits.
+pub(super) fn first_broken(text: &str, limits: Limits) -> Option<Broken> {
     let root = DeTable::parse(text).ok()?;
-    in_table(root.get_ref())
+    in_table("", root.get_ref(), limits)
 }
 
-fn in_table(table: &DeTable<'_>) -> Option<(String, Range<usize>)> {
-    let found = table.iter().filter_map(|(key, value)| {
-        let (inner, span) = in_value(value.get_ref(), value.span())?;
-        Some((inner.unwrap_or_else(|| key.get_ref().to_string()), span))
+fn in_table(name: &str, table: &DeTable<'_>, limits: Limits) -> Option<Broken> {
+    let broken = table.iter().filter_map(|(key, value)| {
+        let whole = key.span().start..value.span().end;
+        in_value(name, key.get_ref(), value, whole, limits)
     });
-    found.min_by_key(|(_, span)| span.start)
+    broken.min_by_key(|(_, span)| span.start)
 }
 
-/// With the key where the number stands in a table of its own.
-fn in_value(value: &DeValue<'_>, span: Range<usize>) -> Option<(Option<String>, Range<usize>)> {
-    match value {
-        DeValue::Float(number) => {
-            let finite = number.as_str().parse().is_ok_and(f64::is_finite);
-            (!finite).then_some((None, span))
+/// `whole` is the place of key and value.
+fn in_value(
+    table: &str,
+    key: &str,
+    value: &Spanned<DeValue<'_>>,
+    whole: Range<usize>,
+    limits: Limits,
+) -> Option<Broken> {
+    let number = match value.get_ref() {
+        DeValue::Float(it) => it.as_str().parse().unwrap_or(f64::NAN),
+        DeValue::Integer(it) => i64::from_str_radix(it.as_str(), it.radix()).ok()? as f64,
+        DeValue::Table(inner) => return in_table(key, inner, limits),
+        DeValue::Array(items) => {
+            let mut items = items.iter();
+            return items.find_map(|it| in_value(table, key, it, whole.clone(), limits));
         }
-        DeValue::Array(items) => items
-            .iter()
-            .find_map(|item| in_value(item.get_ref(), item.span())),
-        DeValue::Table(table) => in_table(table).map(|(key, span)| (Some(key), span)),
-        _ => None,
+        _ => return None,
+    };
+    if !number.is_finite() {
+        return Some((format!("{key} must be a finite number"), value.span()));
     }
+    let rule = limits(table, key)?.broken(number)?;
+    let number = Number(number);
+    Some((format!("{key} must be {rule}, is {number}"), whole))
 }

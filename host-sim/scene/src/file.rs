@@ -7,7 +7,7 @@ use touchdown_core::guard::GuardConfig;
 
 use super::base::BaseTable;
 use super::calibration::CalibrationTable;
-use super::diagnostic;
+use super::diagnostic::{self, Limits};
 use super::faults::FaultTable;
 use super::magnet::MagnetTable;
 use super::materials::MaterialsTable;
@@ -31,14 +31,11 @@ pub fn tables<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputErr
     })
 }
 
-/// The same with finite numbers.
-pub fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, InputError> {
+/// The same with numbers that are finite and within their limits.
+pub fn read<T: DeserializeOwned>(name: &str, text: &str, limits: Limits) -> Result<T, InputError> {
     let file = tables(name, text)?;
-    match diagnostic::not_finite(text) {
-        Some((key, span)) => {
-            let rule = format!("{key} must be a finite number");
-            Err(InputError::at_span(name, text, span, rule))
-        }
+    match diagnostic::first_broken(text, limits) {
+        Some((rule, span)) => Err(InputError::at_span(name, text, span, rule)),
         None => Ok(file),
     }
 }

@@ -155,7 +155,7 @@ impl Scene {
 
     /// Reads the scene `text`; errors name it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Self, InputError> {
-        let file = file::read(name, text)?;
+        let file = file::read(name, text, limits::of_scene)?;
         check::scene(name, file)
             .map_err(|flaw| InputError::at_span(name, text, flaw.span(text), flaw.rule))
     }

@@ -6,40 +6,35 @@ use super::rule::{Keys, MILLI, ON_THE_WALL, RPM};
 use super::{Retainer, Rotor, Start, limits};
 use touchdown_base::plain::Number;
 
-/// Checks `[rotor]`.
+/// Checks `[rotor]`, of which the numbers are within their limits.
 pub fn rotor(table: &RotorTable) -> Result<Rotor, Diagnostic> {
-    const KEYS: Keys = Keys("rotor");
-    let mass = KEYS.within("mass_kg", table.mass_kg, limits::MASS_KG)?;
-    let radius = MILLI * KEYS.within("radius_mm", table.radius_mm, limits::RADIUS_MM)?;
+    let (mass, radius) = (table.mass_kg, MILLI * table.radius_mm);
     let solid = 0.5 * mass * radius * radius;
     let polar_inertia = table.polar_inertia_kg_m2.unwrap_or(solid);
-    KEYS.above_zero("polar_inertia_kg_m2", polar_inertia)?;
     if !limits::INERTIA_RATIO.contains(&(polar_inertia / solid)) {
         let (low, high) = limits::INERTIA_RATIO.into_inner();
         let is = Number(polar_inertia);
         let rule = format!(
             "polar_inertia_kg_m2 must be {low} to {high} times that of a solid cylinder ({solid:.3e}), is {is}"
         );
-        return Err(KEYS.broken("polar_inertia_kg_m2", rule));
+        return Err(Diagnostic::new("rotor", "polar_inertia_kg_m2", rule));
     }
-    let speed = KEYS.between("speed_rpm", table.speed_rpm, limits::SPEED_RPM)?;
     Ok(Rotor {
         mass,
         radius,
         polar_inertia,
-        spin: RPM * speed,
+        spin: RPM * table.speed_rpm,
     })
 }
 
-/// Checks `[retainer]`.
-pub fn retainer(table: &RetainerTable) -> Result<Retainer, Diagnostic> {
-    const KEYS: Keys = Keys("retainer");
-    let clearance = KEYS.within("clearance_mm", table.clearance_mm, limits::CLEARANCE_MM)?;
-    Ok(Retainer {
-        clearance: MILLI * clearance,
-        friction: KEYS.within("friction", table.friction, limits::FRICTION)?,
-        restitution: KEYS.between("restitution", table.restitution, 0.0..=1.0)?,
-    })
+impl From<&RetainerTable> for Retainer {
+    fn from(table: &RetainerTable) -> Self {
+        Self {
+            clearance: MILLI * table.clearance_mm,
+            friction: table.friction,
+            restitution: table.restitution,
+        }
+    }
 }
 
 /// A free start must be within `clearance`, m.
@@ -66,17 +61,10 @@ pub(super) fn start(table: &StartTable, clearance: f64) -> Result<Start, Diagnos
             );
             return Err(KEYS.broken(wall_key, rule));
         }
-        let angle = table.angle_deg.unwrap_or(0.0);
-        let angle = KEYS.between("angle_deg", angle, limits::ANGLE_DEG)?;
-        let speed = table.tangential_mm_s.unwrap_or(0.0);
-        let speed = KEYS.between("tangential_mm_s", speed, limits::SPEED_MM_S)?;
         return Ok(Start::Wall {
-            angle: angle.to_radians(),
-            tangential: MILLI * speed,
+            angle: table.angle_deg.unwrap_or(0.0).to_radians(),
+            tangential: MILLI * table.tangential_mm_s.unwrap_or(0.0),
         });
-    }
-    for (key, speed) in &free[2..] {
-        KEYS.between(key, speed.unwrap_or(0.0), limits::SPEED_MM_S)?;
     }
     let [x, y, vx, vy] = free.map(|(_, value)| MILLI * value.unwrap_or(0.0));
     let distance = x.hypot(y);

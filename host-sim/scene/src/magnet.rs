@@ -49,33 +49,27 @@ impl MagnetTable {
         if stiffness != 0.0 {
             KEYS.between("stiffness_n_m", stiffness.abs(), limits::STIFFNESS_N_M)?;
         }
-        let force = KEYS.each("force_n", self.force_n, limits::FORCE_N)?;
-        let limit = |it| KEYS.within("limit_n", it, limits::LIMIT_N);
         Ok(Magnet {
-            place: MILLI * KEYS.between("z_mm", self.z_mm, limits::PLACE_MM)?,
+            place: MILLI * self.z_mm,
             stiffness,
-            force,
-            limit: self.limit_n.map(limit).transpose()?,
+            force: self.force_n,
+            limit: self.limit_n,
             on: self.on()?,
-            damping: KEYS.between("damping_n_s_m", self.damping_n_s_m, limits::DAMPING_N_S_M)?,
+            damping: self.damping_n_s_m,
         })
     }
 
     /// From when and until when it is on, s, where either is given.
     fn on(&self) -> Result<Option<[f64; 2]>, Diagnostic> {
-        if self.from_s.is_none() && self.until_s.is_none() {
-            return Ok(None);
-        }
-        let from = self.from_s.unwrap_or(0.0);
-        let from = KEYS.between("from_s", from, limits::MOMENT_S)?;
-        let Some(until) = self.until_s else {
-            return Ok(Some([from, f64::INFINITY]));
-        };
-        KEYS.between("until_s", until, limits::MOMENT_S)?;
+        let given = self.from_s.or(self.until_s).is_some();
+        let [from, until] = [
+            self.from_s.unwrap_or(0.0),
+            self.until_s.unwrap_or(f64::INFINITY),
+        ];
         if until <= from {
             return Err(KEYS.broken("until_s", "until_s must be after from_s"));
         }
-        Ok(Some([from, until]))
+        Ok(given.then_some([from, until]))
     }
 }
 

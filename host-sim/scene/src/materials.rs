@@ -7,7 +7,6 @@ pub use touchdown_models::Contact;
 use touchdown_models::{CompliantConfig, Materials as Elastic};
 
 use super::diagnostic::Diagnostic;
-use super::limits;
 use super::rule::{Keys, MILLI};
 
 /// A wall that gives way, in place of restitution. The balls give way with it.
@@ -80,11 +79,6 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
     const KEYS: Keys = Keys("materials");
     let steel = MaterialsTable::default();
     let table = given.unwrap_or(&steel);
-    let modulus = |key, value| {
-        let value = KEYS.within(key, value, limits::MODULUS_GPA);
-        value.map(|value| GIGA * value)
-    };
-    let poisson = |key, value| KEYS.between(key, value, limits::POISSON);
     let names = ["point", "line", "line-power"];
     let contact = KEYS.named_or("contact", &table.contact, names[0], &names)?;
     let contact = match (contact, table.length_mm) {
@@ -94,7 +88,7 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
             return Err(KEYS.broken("length_mm", rule));
         }
         (name, Some(length)) => {
-            let length = MILLI * KEYS.within("length_mm", length, limits::LENGTH_MM)?;
+            let length = MILLI * length;
             match name {
                 "line" => Contact::Line { length },
                 _ => Contact::LinePower { length },
@@ -107,10 +101,10 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
     };
     Ok(Materials {
         elastic: Elastic {
-            rotor_modulus: modulus("rotor_modulus_gpa", table.rotor_modulus_gpa)?,
-            rotor_poisson: poisson("rotor_poisson", table.rotor_poisson)?,
-            retainer_modulus: modulus("retainer_modulus_gpa", table.retainer_modulus_gpa)?,
-            retainer_poisson: poisson("retainer_poisson", table.retainer_poisson)?,
+            rotor_modulus: GIGA * table.rotor_modulus_gpa,
+            rotor_poisson: table.rotor_poisson,
+            retainer_modulus: GIGA * table.retainer_modulus_gpa,
+            retainer_poisson: table.retainer_poisson,
         },
         contact,
         given: given.is_some(),

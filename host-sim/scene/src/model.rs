@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use strum::{Display, IntoStaticStr, VariantArray};
 
+use super::Run;
 use super::diagnostic::Diagnostic;
 use super::rule::{Keys, MICRO, MILLI};
-use super::{Run, limits};
 
 /// Rung of the ladder of models.
 #[derive(
@@ -228,7 +228,7 @@ pub(super) fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<M
         return Err(KEYS.broken("math", rule));
     }
     let step = match table.step_us {
-        Some(step) => MICRO * KEYS.between("step_us", step, limits::STEP_US)?,
+        Some(step) => MICRO * step,
         None => (1.0 / run.sample_rate).clamp(MICRO, 1000.0 * MICRO),
     };
     let cutoff = match table.cutoff_mm_s {
@@ -237,7 +237,7 @@ pub(super) fn model(table: &ModelTable, run: &Run, needed: Fidelity) -> Result<M
             let rule = "cutoff_mm_s is that of rung = \"rigid\"".to_owned();
             return Err(KEYS.broken("cutoff_mm_s", rule));
         }
-        Some(speed) => MILLI * KEYS.between("cutoff_mm_s", speed, limits::CUTOFF_MM_S)?,
+        Some(speed) => MILLI * speed,
     };
     Ok(Model {
         rung,

@@ -7,6 +7,7 @@ use touchdown_base::plain::Number;
 use touchdown_rotor::error::ConfigError;
 
 use super::diagnostic::Diagnostic;
+use super::limits::Limit;
 
 /// A turn a minute, rad/s.
 pub const RPM: f64 = std::f64::consts::TAU / 60.0;
@@ -27,63 +28,16 @@ impl Keys {
         Diagnostic::new(self.0, key, rule)
     }
 
-    fn holds(
-        self,
-        key: &'static str,
-        value: f64,
-        is_right: bool,
-        rule: &str,
-    ) -> Result<f64, Diagnostic> {
-        let broken = || format!("{key} must be {rule}, is {}", Number(value));
-        let value = is_right.then_some(value);
-        value.ok_or_else(|| self.broken(key, broken()))
-    }
-
-    pub(crate) fn above_zero(self, key: &'static str, value: f64) -> Result<f64, Diagnostic> {
-        self.holds(key, value, value > 0.0, "above 0")
-    }
-
-    pub(crate) fn zero_or_more(self, key: &'static str, value: f64) -> Result<f64, Diagnostic> {
-        self.holds(key, value, value >= 0.0, "0 or more")
-    }
-
+    /// A number must be in a range.
     pub(crate) fn between(
         self,
         key: &'static str,
         value: f64,
         range: RangeInclusive<f64>,
     ) -> Result<f64, Diagnostic> {
-        let [low, high] = [*range.start(), *range.end()].map(Number);
-        let rule = format!("{low} to {high}");
-        self.holds(key, value, range.contains(&value), &rule)
-    }
-
-    /// Each of a list.
-    pub(crate) fn each<const N: usize>(
-        self,
-        key: &'static str,
-        values: [f64; N],
-        range: RangeInclusive<f64>,
-    ) -> Result<[f64; N], Diagnostic> {
-        for value in values {
-            self.between(key, value, range.clone())?;
-        }
-        Ok(values)
-    }
-
-    /// In a range that begins at 0 or above: what is on the wrong side of 0 is told so.
-    pub(crate) fn within(
-        self,
-        key: &'static str,
-        value: f64,
-        range: RangeInclusive<f64>,
-    ) -> Result<f64, Diagnostic> {
-        if *range.start() > 0.0 {
-            self.above_zero(key, value)?;
-        } else {
-            self.zero_or_more(key, value)?;
-        }
-        self.between(key, value, range)
+        let rule = Limit::Between(range).broken(value);
+        let broken = |rule| format!("{key} must be {rule}, is {}", Number(value));
+        rule.map_or(Ok(value), |rule| Err(self.broken(key, broken(rule))))
     }
 
     /// The one of `all` that has this name.

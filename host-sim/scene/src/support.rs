@@ -4,8 +4,7 @@ use serde::Deserialize;
 use touchdown_models::{MountConfig, RaceConfig, StopConfig};
 
 use super::diagnostic::Diagnostic;
-use super::limits;
-use super::rule::{Keys, MILLI};
+use super::rule::MILLI;
 use crate::sensors::Tachometers;
 
 /// Of an optical mark, rad: 0.1 mm on a circle of 50 mm diameter.
@@ -82,80 +81,43 @@ const USUAL_HEAT_CAPACITY: f64 = 92.0;
 
 impl SupportTable {
     pub fn check(&self) -> Result<Support, Diagnostic> {
-        const KEYS: Keys = Keys("support");
-        let stiffness = |key, value| KEYS.within(key, value, limits::STIFFNESS_N_M);
-        let damping = |key, value| KEYS.within(key, value, limits::DAMPING_N_S_M);
-        let along_x = [
-            stiffness("stiffness_n_m", self.stiffness_n_m)?,
-            damping("damping_n_s_m", self.damping_n_s_m)?,
-        ];
         let [spring, damper] = [self.vertical_stiffness_n_m, self.vertical_damping_n_s_m];
-        let given = spring.is_some() || damper.is_some();
-        let along_y = [
-            stiffness("vertical_stiffness_n_m", spring.unwrap_or(along_x[0]))?,
-            damping("vertical_damping_n_s_m", damper.unwrap_or(along_x[1]))?,
+        let vertical = [
+            spring.unwrap_or(self.stiffness_n_m),
+            damper.unwrap_or(self.damping_n_s_m),
         ];
+        let stop = self.travel_mm.map(|travel| Stop {
+            travel: MILLI * travel,
+            stiffness: self.stop_stiffness_n_m,
+        });
+        if stop.is_none() && self.stop_stiffness_n_m.is_some() {
+            let rule = "stop_stiffness_n_m needs travel_mm";
+            return Err(Diagnostic::new("support", "stop_stiffness_n_m", rule));
+        }
         Ok(Support {
-            mass: KEYS.within("mass_kg", self.mass_kg, limits::MASS_KG)?,
-            stiffness: along_x[0],
-            damping: along_x[1],
-            vertical: given.then_some(along_y),
-            friction: KEYS.between(
-                "dry_friction_n",
-                self.dry_friction_n,
-                limits::DRY_FRICTION_N,
-            )?,
-            stop: self.stop(KEYS)?,
+            mass: self.mass_kg,
+            stiffness: self.stiffness_n_m,
+            damping: self.damping_n_s_m,
+            vertical: spring.or(damper).map(|_| vertical),
+            friction: self.dry_friction_n,
+            stop,
         })
-    }
-
-    fn stop(&self, keys: Keys) -> Result<Option<Stop>, Diagnostic> {
-        const KEY: &str = "stop_stiffness_n_m";
-        let stiffness = |it| keys.within(KEY, it, limits::STIFFNESS_N_M);
-        let stiffness = self.stop_stiffness_n_m.map(stiffness).transpose()?;
-        let Some(travel) = self.travel_mm else {
-            return match stiffness {
-                Some(_) => Err(keys.broken(KEY, "stop_stiffness_n_m needs travel_mm")),
-                None => Ok(None),
-            };
-        };
-        Ok(Some(Stop {
-            travel: MILLI * keys.within("travel_mm", travel, limits::TRAVEL_MM)?,
-            stiffness,
-        }))
     }
 }
 
-impl BallBearingTable {
-    pub fn check(&self) -> Result<BallBearing, Diagnostic> {
-        const KEYS: Keys = Keys("ball_bearing");
-        let inertia = self.inner_ring_inertia_kg_m2;
-        let cage_ratio = self.cage_ratio.unwrap_or(USUAL_CAGE_RATIO);
-        let capacity = self.heat_capacity_j_k.unwrap_or(USUAL_HEAT_CAPACITY);
-        let stiffness = |it| KEYS.within("stiffness_n_m", it, limits::STIFFNESS_N_M);
-        let drag = |key, value| KEYS.within(key, value, limits::DRAG);
-        let marks = [
-            ("inner_ring_marks", self.inner_ring_marks),
-            ("cage_marks", self.cage_marks),
-        ];
-        for (key, marks) in marks {
-            if let Some(marks) = marks {
-                KEYS.between(key, f64::from(marks), limits::MARKS)?;
-            }
+impl From<&BallBearingTable> for BallBearing {
+    fn from(table: &BallBearingTable) -> Self {
+        Self {
+            race: RaceConfig {
+                inertia: table.inner_ring_inertia_kg_m2,
+                dry_drag: table.dry_drag_n_m,
+                viscous_drag: table.viscous_drag_n_m_s,
+                cage_ratio: table.cage_ratio.unwrap_or(USUAL_CAGE_RATIO),
+                heat_capacity: table.heat_capacity_j_k.unwrap_or(USUAL_HEAT_CAPACITY),
+                heat_loss: table.heat_loss_w_k,
+            },
+            stiffness: table.stiffness_n_m,
+            marks: [table.inner_ring_marks, table.cage_marks],
         }
-        let key = "inner_ring_inertia_kg_m2";
-        let race = RaceConfig {
-            inertia: KEYS.within(key, inertia, limits::RING_INERTIA_KG_M2)?,
-            dry_drag: drag("dry_drag_n_m", self.dry_drag_n_m)?,
-            viscous_drag: drag("viscous_drag_n_m_s", self.viscous_drag_n_m_s)?,
-            cage_ratio: KEYS.between("cage_ratio", cage_ratio, limits::CAGE_RATIO)?,
-            heat_capacity: KEYS.within("heat_capacity_j_k", capacity, limits::HEAT_CAPACITY_J_K)?,
-            heat_loss: drag("heat_loss_w_k", self.heat_loss_w_k)?,
-        };
-        Ok(BallBearing {
-            race,
-            stiffness: self.stiffness_n_m.map(stiffness).transpose()?,
-            marks: marks.map(|(_, marks)| marks),
-        })
     }
 }

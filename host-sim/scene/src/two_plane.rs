@@ -235,26 +235,20 @@ impl TwoPlaneTable {
         let rings = all_rings(rotor, retainer, rings)?;
         let ends = rings.iter().map(|ring| ring.place);
         let lowest = ends.clone().fold(f64::INFINITY, f64::min);
-        let sensors = self.sensors([lowest, ends.fold(f64::NEG_INFINITY, f64::max)])?;
-        let mode = |it| KEYS.between("elastic_mode_hz", it, limits::ELASTIC_MODE_HZ);
-        let elastic_mode = self.elastic_mode_hz.map(mode).transpose()?;
-        KEYS.each("tilt_mrad", self.tilt_mrad, limits::TILT)?;
-        KEYS.each("tilt_rate_rad_s", self.tilt_rate_rad_s, limits::TILT)?;
-        KEYS.between("unbalance_deg", self.unbalance_deg, limits::ANGLE_DEG)?;
-        KEYS.between("skew_deg", self.skew_deg, limits::ANGLE_DEG)?;
-        KEYS.between("gravity_deg", self.gravity_deg, limits::ANGLE_DEG)?;
-        let unbalance = self.unbalance_g_mm;
-        let unbalance = KEYS.between("unbalance_g_mm", unbalance, limits::UNBALANCE_G_MM)?;
-        let skew = KEYS.between("skew_mrad", self.skew_mrad, limits::SKEW_MRAD)?;
+        let ends = [lowest, ends.fold(f64::NEG_INFINITY, f64::max)];
+        let places = |it: [f64; 2]| it.map(|place| MILLI * place);
         Ok(TwoPlane {
             transverse_inertia: self.transverse_inertia(rotor)?,
-            unbalance: [GRAM_MM * unbalance, self.unbalance_deg.to_radians()],
-            skew: [MILLI * skew, self.skew_deg.to_radians()],
-            elastic_mode,
+            unbalance: [
+                GRAM_MM * self.unbalance_g_mm,
+                self.unbalance_deg.to_radians(),
+            ],
+            skew: [MILLI * self.skew_mrad, self.skew_deg.to_radians()],
+            elastic_mode: self.elastic_mode_hz,
             tilt: self.tilt_mrad.map(|tilt| MILLI * tilt),
             tilt_rate: self.tilt_rate_rad_s,
             gravity_angle: self.gravity_deg.to_radians(),
-            sensors,
+            sensors: self.sensor_z_mm.map_or(ends, places),
             rings,
             magnets: all_magnets(magnets)?,
             modes: all_modes(modes, rotor.mass, self.rotor_length_mm)?,
@@ -262,22 +256,13 @@ impl TwoPlaneTable {
         })
     }
 
-    /// Places of the planes as given, or `ends`, m.
-    fn sensors(&self, ends: [f64; 2]) -> Result<[f64; 2], Diagnostic> {
-        let Some(places) = self.sensor_z_mm else {
-            return Ok(ends);
-        };
-        let places = KEYS.each("sensor_z_mm", places, limits::PLACE_MM)?;
-        Ok(places.map(|place| MILLI * place))
-    }
-
     /// As given, or that of a solid cylinder of the given length.
     fn transverse_inertia(&self, rotor: &Rotor) -> Result<f64, Diagnostic> {
         let key = "transverse_inertia_kg_m2";
         let (inertia, key) = match (self.transverse_inertia_kg_m2, self.rotor_length_mm) {
-            (Some(inertia), None) => (KEYS.above_zero(key, inertia)?, key),
+            (Some(inertia), None) => (inertia, key),
             (None, Some(length)) => {
-                let length = MILLI * KEYS.within("rotor_length_mm", length, limits::LENGTH_MM)?;
+                let length = MILLI * length;
                 let square = rotor.radius * rotor.radius / 4.0 + length * length / 12.0;
                 (rotor.mass * square, "rotor_length_mm")
             }
@@ -319,41 +304,26 @@ fn all_rings(
     })
 }
 
-/// A flaw of a table in a ring's row stands at that table.
-fn in_ring<T, U>(
-    check: impl Fn(&T) -> Result<U, Diagnostic>,
-) -> impl Fn(&T) -> Result<U, Diagnostic> {
-    move |table| check(table).map_err(|flaw| RING.broken(flaw.table, flaw.rule))
-}
-
 const RING: Keys = Keys("ring");
 
 impl RingTable {
     /// `name` where it gives none.
     fn check(&self, name: &str, rotor: &Rotor, retainer: &Retainer) -> Result<Ring, Diagnostic> {
-        let given = |key, value: Option<f64>, range| {
-            let given = |value| RING.between(key, value, range);
-            value.map(given).transpose()
-        };
-        let radius = given("radius_mm", self.radius_mm, limits::RADIUS_MM)?;
-        let clearance = given("clearance_mm", self.clearance_mm, limits::CLEARANCE_MM)?;
-        let friction = given("friction", self.friction, limits::FRICTION)?;
-        let restitution = given("restitution", self.restitution, 0.0..=1.0)?;
-        let support = self.support.as_ref().map(in_ring(SupportTable::check));
-        let ball_bearing = self.ball_bearing.as_ref();
-        let ball_bearing = ball_bearing.map(in_ring(BallBearingTable::check));
+        let support = self.support.as_ref().map(SupportTable::check);
+        // A flaw of a table in a ring's row stands at that table.
+        let there = |flaw: Diagnostic| RING.broken(flaw.table, flaw.rule);
         Ok(Ring {
             name: self.name.clone().unwrap_or_else(|| name.to_owned()),
-            place: MILLI * RING.between("z_mm", self.z_mm, limits::PLACE_MM)?,
-            radius: radius.map_or(rotor.radius, |it| MILLI * it),
+            place: MILLI * self.z_mm,
+            radius: self.radius_mm.map_or(rotor.radius, |it| MILLI * it),
             retainer: Retainer {
-                clearance: clearance.map_or(retainer.clearance, |it| MILLI * it),
-                friction: friction.unwrap_or(retainer.friction),
-                restitution: restitution.unwrap_or(retainer.restitution),
+                clearance: (self.clearance_mm).map_or(retainer.clearance, |it| MILLI * it),
+                friction: self.friction.unwrap_or(retainer.friction),
+                restitution: self.restitution.unwrap_or(retainer.restitution),
             },
             wall: None,
-            support: support.transpose()?,
-            ball_bearing: ball_bearing.transpose()?,
+            support: support.transpose().map_err(there)?,
+            ball_bearing: self.ball_bearing.as_ref().map(BallBearing::from),
         })
     }
 }

@@ -10,11 +10,12 @@ use super::table::Tables;
 use touchdown_base::input_error::InputError;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::read;
+use touchdown_scene::limits::of_machine;
 use touchdown_scene::rule::translate;
 
 /// The settings of the file `text`, as valid as the controller wants them; errors name it `name`.
 pub fn parse(name: &str, text: &str) -> Result<Settings, InputError> {
-    let tables: Tables = read(name, text)?;
+    let tables: Tables = read(name, text, of_machine)?;
     if let Some(rule) = cut_short(text) {
         let line = text.lines().count().max(1) as u64;
         return Err(InputError::at_line(name, line, rule));

@@ -14,10 +14,10 @@ use touchdown_scene::calibration::{CalibrationTable, DEGREE, PlaneTable, text_of
 use touchdown_scene::check::gravity;
 use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
-use touchdown_scene::machine::{retainer, rotor};
-use touchdown_scene::machine_config;
+use touchdown_scene::machine::rotor;
 use touchdown_scene::names::channel_name;
 use touchdown_scene::rule::{MICRO, MILLI, RPM, exactly};
+use touchdown_scene::{Retainer, machine_config};
 
 /// Digits that tell every f32 from its neighbours.
 const DIGITS: usize = 9;
@@ -161,7 +161,7 @@ impl Tables {
     /// In SI. The core's own rules are not looked at yet.
     pub(super) fn settings(&self) -> Result<Settings, Diagnostic> {
         let rotor = rotor(&self.rotor)?;
-        let retainer = retainer(&self.retainer)?;
+        let retainer = Retainer::from(&self.retainer);
         let gravity = gravity(self.run.gravity_m_s2)?;
         let sensors = &self.sensors;
         let calibration = self.calibration.as_ref();
