@@ -47,29 +47,16 @@ impl Materials {
     }
 }
 
-/// Steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
-#[derive(Deserialize)]
+/// By default steel, 210 GPa and 0.3: pi times the contact modulus is 3.625e11 Pa.
+#[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct MaterialsTable {
-    pub rotor_modulus_gpa: f64,
-    pub rotor_poisson: f64,
-    pub retainer_modulus_gpa: f64,
-    pub retainer_poisson: f64,
+    pub rotor_modulus_gpa: Option<f64>,
+    pub rotor_poisson: Option<f64>,
+    pub retainer_modulus_gpa: Option<f64>,
+    pub retainer_poisson: Option<f64>,
     pub contact: Option<String>,
     pub length_mm: Option<f64>,
-}
-
-impl Default for MaterialsTable {
-    fn default() -> Self {
-        Self {
-            rotor_modulus_gpa: 210.0,
-            rotor_poisson: 0.3,
-            retainer_modulus_gpa: 210.0,
-            retainer_poisson: 0.3,
-            contact: None,
-            length_mm: None,
-        }
-    }
 }
 
 const GIGA: f64 = 1e9;
@@ -77,8 +64,10 @@ const GIGA: f64 = 1e9;
 /// The materials, and how they touch.
 pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Diagnostic> {
     const KEYS: Keys = Keys("materials");
-    let steel = MaterialsTable::default();
-    let table = given.unwrap_or(&steel);
+    let (steel, none) = (Elastic::steel(), MaterialsTable::default());
+    let table = given.unwrap_or(&none);
+    let modulus = |it: Option<f64>| it.map_or(steel.rotor_modulus, |it| GIGA * it);
+    let poisson = |it: Option<f64>| it.unwrap_or(steel.rotor_poisson);
     let names = ["point", "line", "line-power"];
     let contact = KEYS.named_or("contact", &table.contact, names[0], &names)?;
     let contact = match (contact, table.length_mm) {
@@ -101,10 +90,10 @@ pub(super) fn materials(given: Option<&MaterialsTable>) -> Result<Materials, Dia
     };
     Ok(Materials {
         elastic: Elastic {
-            rotor_modulus: GIGA * table.rotor_modulus_gpa,
-            rotor_poisson: table.rotor_poisson,
-            retainer_modulus: GIGA * table.retainer_modulus_gpa,
-            retainer_poisson: table.retainer_poisson,
+            rotor_modulus: modulus(table.rotor_modulus_gpa),
+            rotor_poisson: poisson(table.rotor_poisson),
+            retainer_modulus: modulus(table.retainer_modulus_gpa),
+            retainer_poisson: poisson(table.retainer_poisson),
         },
         contact,
         given: given.is_some(),
