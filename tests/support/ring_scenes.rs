@@ -257,12 +257,7 @@ impl Fall {
             friction: 0.0,
             stop: mount.stop,
         });
-        let race = self.race.map(|race| reference::coupled::Race {
-            inertia: race.inertia,
-            dry_drag: race.dry_drag,
-            viscous_drag: race.viscous_drag,
-        });
-        let machine = CoupledMachine::level(&rotor, mount, race);
+        let machine = CoupledMachine::level(&rotor, mount, self.race);
         let start = CoupledStart::level(&self.start, rotor.clearance);
         CoupledReference::new(&machine, &start, self.spin)
     }

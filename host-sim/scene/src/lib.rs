@@ -27,11 +27,11 @@ pub use base::Base;
 pub use builtin::{BUILT_IN, BuiltIn};
 pub use magnet::Magnet;
 pub use materials::{CompliantWall, Contact, Materials};
-pub use mode::{MODES, Mode};
+pub use mode::{MODES, Mode, Shape};
 pub use model::{Fidelity, LeftOut, Math, Model, Precision, Removable, Scheme};
 pub use outputs::{Auto, Fixed, Output, Request};
-pub use support::{BallBearing, Stop, Support};
-pub use two_plane::{RINGS, Ring, TwoPlane};
+pub use support::{BallBearing, Race, Stop, Support};
+pub use two_plane::{RINGS, Ring, TwoPlane, Unbalance};
 
 use std::borrow::Cow;
 use std::path::Path;

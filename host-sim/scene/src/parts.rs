@@ -59,7 +59,7 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
     let (s, t, c) = (Fidelity::Support, Fidelity::TwoPlane, Fidelity::Coupled);
     let stop = support.is_some_and(|it| it.stop.is_some());
     let is = |of: fn(&TwoPlane) -> bool| two_plane.is_some_and(of);
-    let turns = is(|it| it.unbalance[0] > 0.0 || it.skew[0] > 0.0);
+    let turns = is(|it| it.unbalance.eccentricity > 0.0 || it.unbalance.skew > 0.0);
     part(Mount, support.is_some(), s, "[support]");
     part(Stop, stop, s, "travel_mm");
     part(BallBearing, bearing.is_some(), s, "[ball_bearing]");

@@ -16,12 +16,14 @@ const SPEED_WINDOW: f64 = 0.005;
 pub type Support = MountConfig;
 /// A stop of a ring, without friction.
 pub type Stop = StopConfig;
+/// Inner ring, cage, drag and heat of a ball bearing.
+pub type Race = RaceConfig;
 
 /// A ball bearing as retainer: its inner ring turns, and the rotor rubs on that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallBearing {
     /// Its inner ring, cage, drag and heat.
-    pub race: RaceConfig,
+    pub race: Race,
     /// Of balls and races under a load, N/m; rigid without.
     pub stiffness: Option<f64>,
     /// Marks that the optical sensors see on a turn of inner ring and cage; none where there is no sensor.
@@ -108,7 +110,7 @@ impl SupportTable {
 impl From<&BallBearingTable> for BallBearing {
     fn from(table: &BallBearingTable) -> Self {
         Self {
-            race: RaceConfig {
+            race: Race {
                 inertia: table.inner_ring_inertia_kg_m2,
                 dry_drag: table.dry_drag_n_m,
                 viscous_drag: table.viscous_drag_n_m_s,

@@ -1,6 +1,7 @@
 //! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
+use touchdown_models::UnbalanceConfig;
 
 use super::base::Base;
 use super::diagnostic::Diagnostic;
@@ -16,15 +17,16 @@ use touchdown_base::plain::Number;
 pub const RINGS: usize = 4;
 const GRAM_MM: f64 = 1e-6;
 
+/// Static and couple unbalance.
+pub type Unbalance = UnbalanceConfig;
+
 /// A rotor with two ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoPlane {
     /// About an axis across the rotor, through its centre of mass, kg m^2.
     pub transverse_inertia: f64,
-    /// Mass times distance of the centre of mass from the axis, kg m; its angle on the rotor, rad.
-    pub unbalance: [f64; 2],
-    /// Slope of the principal axis against the rotor's, rad; its angle on the rotor, rad.
-    pub skew: [f64; 2],
+    /// Of the centre of mass and of the principal axis.
+    pub unbalance: Unbalance,
     /// First bending mode of the rotor, Hz.
     pub elastic_mode: Option<f64>,
     /// Slope of the rotor's axis at the release: change of x and y along z.
@@ -239,11 +241,12 @@ impl TwoPlaneTable {
         let places = |it: [f64; 2]| it.map(|place| MILLI * place);
         Ok(TwoPlane {
             transverse_inertia: self.transverse_inertia(rotor)?,
-            unbalance: [
-                GRAM_MM * self.unbalance_g_mm,
-                self.unbalance_deg.to_radians(),
-            ],
-            skew: [MILLI * self.skew_mrad, self.skew_deg.to_radians()],
+            unbalance: Unbalance {
+                eccentricity: GRAM_MM * self.unbalance_g_mm / rotor.mass,
+                angle: self.unbalance_deg.to_radians(),
+                skew: MILLI * self.skew_mrad,
+                skew_angle: self.skew_deg.to_radians(),
+            },
             elastic_mode: self.elastic_mode_hz,
             tilt: self.tilt_mrad.map(|tilt| MILLI * tilt),
             tilt_rate: self.tilt_rate_rad_s,

@@ -5,8 +5,7 @@ use touchdown_scene::sensors::{Motion, PLANES};
 use super::{Units, press};
 use crate::reference::Reference;
 use crate::reference::coupled::{
-    Bending, CoupledMachine, CoupledReference, CoupledStart, CoupledState, Race, Retainer,
-    RingState, Unbalance,
+    CoupledMachine, CoupledReference, CoupledStart, CoupledState, Retainer, RingState,
 };
 use crate::reference::press::Press;
 use touchdown_base::history::{ModelEvent, PhaseKind, Recorder, RotorState};
@@ -183,7 +182,7 @@ fn coupled(scene: &Scene) -> CoupledReference {
     let machine = match &scene.two_plane {
         Some(machine) => tilting(scene, machine),
         None => {
-            let race = scene.ball_bearing.as_ref().map(race);
+            let race = scene.ball_bearing.map(|it| it.race);
             CoupledMachine::level(&scene.machine(), scene.support, race)
         }
     };
@@ -196,14 +195,6 @@ fn coupled(scene: &Scene) -> CoupledReference {
     CoupledReference::new(&machine, &start, scene.rotor.spin)
 }
 
-fn race(bearing: &touchdown_scene::BallBearing) -> Race {
-    Race {
-        inertia: bearing.race.inertia,
-        dry_drag: bearing.race.dry_drag,
-        viscous_drag: bearing.race.viscous_drag,
-    }
-}
-
 fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
     let retainer = |it: &touchdown_scene::Ring| Retainer {
         place: it.place,
@@ -212,7 +203,7 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         friction: it.retainer.friction,
         restitution: it.retainer.restitution,
         mount: it.support,
-        race: it.ball_bearing.as_ref().map(race),
+        race: it.ball_bearing.map(|it| it.race),
         press: it.wall.map(|wall| Press {
             balls: wall.law.balls,
             slowest: wall.law.slowest,
@@ -223,14 +214,6 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
             )
         }),
     };
-    let bending = |mode: &touchdown_scene::Mode| Bending {
-        rate: mode.speed,
-        damping_ratio: mode.damping_ratio,
-        modal_mass: mode.mass,
-        at_rings: machine.rings.iter().map(|it| mode.at(it.place)).collect(),
-        at_magnets: machine.magnets.iter().map(|it| mode.at(it.place)).collect(),
-        at_centre: mode.at(0.0),
-    };
     let (sin, cos) = machine.gravity_angle.sin_cos();
     CoupledMachine {
         mass: scene.rotor.mass,
@@ -238,14 +221,9 @@ fn tilting(scene: &Scene, machine: &TwoPlane) -> CoupledMachine {
         transverse_inertia: machine.transverse_inertia,
         gravity: [scene.run.gravity * sin, -scene.run.gravity * cos],
         retainers: machine.rings.iter().map(retainer).collect(),
-        unbalance: Unbalance {
-            eccentricity: machine.unbalance[0] / scene.rotor.mass,
-            angle: machine.unbalance[1],
-            skew: machine.skew[0],
-            skew_angle: machine.skew[1],
-        },
+        unbalance: machine.unbalance,
         magnets: machine.magnets.clone(),
-        bending: machine.modes.iter().map(bending).collect(),
+        bending: machine.modes.clone(),
         base: machine.base,
     }
 }

@@ -7,8 +7,8 @@ use touchdown_base::machine::{Machine, Start};
 use touchdown_tests::close::{close, close_pair};
 use touchdown_tests::rig::RIG;
 use touchdown_truth::reference::Reference;
-use touchdown_scene::{Magnet, Stop, Support};
-use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Race, Retainer, Unbalance};
+use touchdown_scene::{Magnet, Race, Stop, Support, Unbalance};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, CoupledState, Mode, Retainer};
 
 const SPIN: f64 = 1000.0 * PI;
 const MOUNT: Support = Support {
@@ -40,6 +40,11 @@ fn support(
     spin: f64,
 ) -> CoupledReference {
     CoupledReference::new(&CoupledMachine::level(&rotor, mount, race), start, spin)
+}
+
+/// Of an inertia (kg m^2), dry (N m) and viscous drag (N m s).
+fn race([inertia, dry_drag, viscous_drag]: [f64; 3]) -> Race {
+    Race { inertia, dry_drag, viscous_drag, cage_ratio: 0.4, heat_capacity: 92.0, heat_loss: 0.0 }
 }
 
 /// In the gap of the rig, all around at rest.
@@ -418,11 +423,7 @@ fn angular_momentum_is_kept_without_friction() {
 
 #[test]
 fn inner_ring_spins_up_to_the_rotor() {
-    let race = Race {
-        inertia: 2e-4,
-        dry_drag: 0.0,
-        viscous_drag: 0.0,
-    };
+    let race = race([2e-4, 0.0, 0.0]);
     // Where friction holds the rotor's weight on the slope it stays until slip ends.
     let angle = -RIG.friction.atan();
     let start = released(Start::Wall {
@@ -469,11 +470,7 @@ fn inner_ring_spins_up_to_the_rotor() {
 
 #[test]
 fn drag_stops_the_inner_ring() {
-    let race = Race {
-        inertia: 2e-4,
-        dry_drag: 0.02,
-        viscous_drag: 1e-3,
-    };
+    let race = race([2e-4, 0.02, 1e-3]);
     let rotor = Machine {
         gravity: 0.0,
         ..RIG
@@ -668,11 +665,7 @@ fn heavy_rings_are_fixed_ones() {
         damping: 0.0,
         vertical: None, friction: 0.0, stop: Some(Stop::rigid(1e-4)),
     };
-    let race = Race {
-        inertia: 1e15,
-        dry_drag: 1e-3,
-        viscous_drag: 1e-3,
-    };
+    let race = race([1e15, 1e-3, 1e-3]);
     let fixed = Reference::new(&RIG, &start, SPIN).advance(0.3, &mut |_| {});
     let mut heavy = support(RIG, Some(mount), Some(race), &released(start), SPIN);
     let heavy = heavy.advance(0.3, &mut |_, _| {});
@@ -686,11 +679,7 @@ fn heavy_rings_are_fixed_ones() {
 #[test]
 fn sampling_does_not_matter() {
     let start = released(free([1e-4, 0.0], [0.0; 2]));
-    let race = Race {
-        inertia: 2e-4,
-        dry_drag: 0.01,
-        viscous_drag: 1e-5,
-    };
+    let race = race([2e-4, 0.01, 1e-5]);
     let new = || support(RIG, Some(MOUNT), Some(race), &start, SPIN);
     let mut reference = new();
     for k in 0..14_000 {
@@ -767,7 +756,7 @@ proptest! {
         let (mass, stiffness) = (10_f64.powf(mass), 10_f64.powf(stiffness));
         let damping = damping * (mass * stiffness).sqrt();
         let mount = has_mount.then_some(Support { mass, stiffness, damping, vertical: None, friction: 0.0, stop });
-        let race = has_race.then_some(Race { inertia: 10_f64.powf(inertia), dry_drag, viscous_drag });
+        let race = has_race.then_some(race([10_f64.powf(inertia), dry_drag, viscous_drag]));
         let out = part * rotor.clearance;
         let start = free([out * angle.sin(), -out * angle.cos()], [vx, vy]);
         let mut reference = support(rotor, mount, race, &released(start), spin);

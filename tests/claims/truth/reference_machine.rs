@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use touchdown_base::history::ModelEvent;
 use touchdown_base::machine::Machine;
 use touchdown_tests::close::{close, close_pair};
-use touchdown_scene::{Magnet, Stop, Support};
-use touchdown_truth::reference::coupled::{Bending, CoupledMachine, CoupledReference, CoupledStart, Race, Retainer, Unbalance};
+use touchdown_scene::{Magnet, Mode, Race, Shape, Stop, Support, Unbalance};
+use touchdown_truth::reference::coupled::{CoupledMachine, CoupledReference, CoupledStart, Retainer};
 
 const CLEARANCE: f64 = 3e-4;
 const MASS: f64 = 3.42;
@@ -22,6 +22,9 @@ const RACE: Race = Race {
     inertia: 3e-5,
     dry_drag: 0.01,
     viscous_drag: 1e-5,
+    cage_ratio: 0.4,
+    heat_capacity: 92.0,
+    heat_loss: 0.0,
 };
 
 fn retainer(place: f64, mount: Option<Support>, race: Option<Race>) -> Retainer {
@@ -51,15 +54,13 @@ fn machine(retainers: Vec<Retainer>) -> CoupledMachine {
     }
 }
 
-/// Shapes of a beam's first mode, at the ends and the middle.
-fn bending(rate: f64, damping_ratio: f64, machine: &CoupledMachine) -> Bending {
-    Bending {
-        rate,
+/// Like a beam's first mode: at the rings and in the middle.
+fn bending(speed: f64, damping_ratio: f64) -> Mode {
+    Mode {
+        speed,
         damping_ratio,
-        modal_mass: 1.0,
-        at_rings: vec![0.8; machine.retainers.len()],
-        at_magnets: vec![0.3; machine.magnets.len()],
-        at_centre: -0.6,
+        mass: 1.0,
+        shape: Shape::Points(vec![[-0.1, 0.8], [0.0, -0.6], [0.13, 0.8]]),
     }
 }
 
@@ -118,7 +119,7 @@ fn heavy_rings_are_rigid_ones() {
     let mut want = CoupledReference::new(&whole, &start, 0.1 * SPIN);
     for it in &mut whole.retainers {
         it.mount = Some(Support { mass: 1e15, stiffness: 1e12, damping: 0.0, vertical: None, friction: 0.0, stop: Some(Stop::rigid(1e-4)) });
-        it.race = Some(Race { inertia: 1e15, dry_drag: 1e-3, viscous_drag: 1e-3 });
+        it.race = Some(Race { inertia: 1e15, dry_drag: 1e-3, viscous_drag: 1e-3, ..RACE });
     }
     let mut have = CoupledReference::new(&whole, &start, 0.1 * SPIN);
     let (mut hits, mut wanted) = (Vec::new(), Vec::new());
@@ -182,7 +183,7 @@ fn bending_rings_at_its_frequency_with_its_damping() {
     whole.gravity = [0.0; 2];
     for damping_ratio in [0.0, 0.02, 0.3] {
         let rate = 2.0 * PI * 800.0;
-        whole.bending = vec![bending(rate, damping_ratio, &whole)];
+        whole.bending = vec![bending(rate, damping_ratio)];
         let start = CoupledStart {
             bending: vec![[[1e-4, -5e-5], [0.0; 2]]],
             ..CoupledStart::default()
@@ -214,7 +215,7 @@ fn unbalance_bends_by_its_part_in_the_mode() {
     whole.gravity = [0.0; 2];
     whole.unbalance.eccentricity = 1e-6;
     let rate = 2.0 * PI * 800.0;
-    whole.bending = vec![bending(rate, 0.0, &whole)];
+    whole.bending = vec![bending(rate, 0.0)];
     let spin = 0.5 * rate;
     let force = MASS * 1e-6 * spin * spin;
     let bent = -0.6 * force / (rate * rate - spin * spin);
@@ -273,7 +274,7 @@ fn whole_machine(restitution: f64) -> CoupledMachine {
         retainer(0.13, Some(mount), None),
     ]);
     frictionless(&mut whole, restitution);
-    whole.bending = vec![bending(2.0 * PI * 800.0, 0.0, &whole)];
+    whole.bending = vec![bending(2.0 * PI * 800.0, 0.0)];
     whole
 }
 
@@ -329,10 +330,11 @@ fn inner_rings_spin_up_at_the_rotors_cost() {
         inertia: 1e-6,
         dry_drag: 0.0,
         viscous_drag: 0.0,
+        ..RACE
     };
     let ends = [-0.1, 0.13].map(|place| retainer(place, Some(MOUNT), Some(race)));
     let mut whole = machine(ends.to_vec());
-    whole.bending = vec![bending(2.0 * PI * 800.0, 0.05, &whole)];
+    whole.bending = vec![bending(2.0 * PI * 800.0, 0.05)];
     let mut reference = CoupledReference::new(&whole, &at([2e-5, 0.0], [0.0; 2]), SPIN);
     let bore = RADIUS + CLEARANCE;
     let kept = POLAR * SPIN / RADIUS;

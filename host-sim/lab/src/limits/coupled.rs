@@ -148,7 +148,7 @@ fn greatest_acceleration(scene: &Scene) -> f64 {
     let in_ring = |ring: &Ring| {
         let carried = stiffness * ring.retainer.clearance / scene.rotor.mass;
         let unbalance =
-            machine.unbalance[0] / scene.rotor.mass + machine.skew[0].abs() * ring.place.abs();
+            machine.unbalance.eccentricity + machine.unbalance.skew.abs() * ring.place.abs();
         (scene.run.gravity + carried + spin * unbalance) * rotor_lever(scene, machine, ring)
     };
     machine.rings.iter().map(in_ring).fold(0.0, f64::max)

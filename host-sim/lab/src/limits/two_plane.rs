@@ -49,12 +49,14 @@ const EXTREMES: [(&str, Change); 18] = [
     ("no spin", |s, _| s.rotor.spin = 0.0),
     ("spin of 1 000 000 rpm", |s, it| {
         s.rotor.spin = 1e6 * TAU / 60.0;
-        it.unbalance[0] = 0.0;
+        it.unbalance.eccentricity = 0.0;
     }),
-    ("unbalance of 1 mm g a gram of rotor", |_, it| {
-        it.unbalance[0] = 3.42e-3 * 1e-1
+    ("unbalance of 1 mm g a gram of rotor", |s, it| {
+        it.unbalance.eccentricity = 3.42e-3 * 1e-1 / s.rotor.mass;
     }),
-    ("principal axis 1 mrad askew", |_, it| it.skew = [1e-3, 1.0]),
+    ("principal axis 1 mrad askew", |_, it| {
+        (it.unbalance.skew, it.unbalance.skew_angle) = (1e-3, 1.0);
+    }),
     ("magnets that pull with ten times the weight", |s, it| {
         it.magnets = magnets(10.0 * s.rotor.mass * 9.81 / 0.3e-3);
     }),

@@ -1,8 +1,7 @@
 //! Rungs `support`, `two-plane` and `coupled`: from the scene's parts to a model.
 
 use touchdown_models::{
-    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement, UnbalanceConfig,
-    Whole,
+    ActuatorConfig, Coupled, CoupledConfig, CoupledState, ModeConfig, Placement, Whole,
 };
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Poly32;
@@ -105,12 +104,7 @@ fn config<const N: usize>(scene: &Scene) -> Result<CoupledConfig<N>, ConfigError
     let (sin, cos) = machine.gravity_angle.sin_cos();
     config.gravity = [scene.run.gravity * sin, -scene.run.gravity * cos];
     if scene.model.has(Removable::Unbalance) {
-        config.unbalance = UnbalanceConfig {
-            eccentricity: machine.unbalance[0] / scene.rotor.mass,
-            angle: machine.unbalance[1],
-            skew: machine.skew[0],
-            skew_angle: machine.skew[1],
-        };
+        config.unbalance = machine.unbalance;
     }
     let damps = f64::from(u8::from(scene.model.rung == Fidelity::Coupled));
     for (to, from) in config.magnets.iter_mut().zip(modelled_magnets(scene)) {

@@ -320,7 +320,8 @@ fn ledger(scene: &Scene, unit: f64, [start, end]: &[CoupledEnergy<f64>; 2]) -> L
     let bends = modelled_modes(scene).next().is_some();
     let machine = ends(scene);
     let magnets = machine.is_some_and(|it| !it.magnets.is_empty());
-    let driven = machine.is_some_and(|it| it.unbalance[0] != 0.0 || it.skew[0] != 0.0);
+    let driven =
+        machine.is_some_and(|it| it.unbalance.eccentricity != 0.0 || it.unbalance.skew != 0.0);
     let moved = machine
         .is_some_and(|it| it.base.is_some() || it.magnets.iter().any(|magnet| magnet.on.is_some()));
     let damped = bends || magnets;

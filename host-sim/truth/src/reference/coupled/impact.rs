@@ -222,8 +222,9 @@ fn at_once(
 
 #[cfg(test)]
 mod tests {
-    use super::super::machine::{Bending, CoupledMachine, Race, Retainer, Unbalance};
+    use super::super::machine::{CoupledMachine, Retainer};
     use super::*;
+    use touchdown_scene::{Mode, Race, Shape, Unbalance};
 
     /// Of a bending rotor one end slides, the other lands: the speeds of centre, tilt and modes all but cancel at the ends,
     /// and their rounding does not. A moment of a drop of `ufu-rig`.
@@ -242,15 +243,16 @@ mod tests {
                 inertia: 8e-6,
                 dry_drag: 0.0,
                 viscous_drag: 0.0,
+                cage_ratio: 0.4,
+                heat_capacity: 92.0,
+                heat_loss: 0.0,
             }),
         };
-        let mode = |at_rings: [f64; 2]| Bending {
-            rate: 656.0,
+        let mode = |[a, b]: [f64; 2]| Mode {
+            speed: 656.0,
             damping_ratio: 0.0,
-            modal_mass: mass,
-            at_rings: at_rings.to_vec(),
-            at_magnets: Vec::new(),
-            at_centre: 0.0,
+            mass,
+            shape: Shape::Points(vec![[-place, a], [place, b]]),
         };
         let machine = CoupledMachine {
             mass,

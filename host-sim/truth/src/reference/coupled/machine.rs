@@ -15,21 +15,10 @@ use super::soft::Soft;
 use super::surroundings::{Body, Surroundings};
 use super::system::{Hold, Link, Mode, System};
 use touchdown_base::machine::Machine;
-use touchdown_scene::{Base, Magnet, Stop, Support};
+use touchdown_scene::{Base, Magnet, Mode as Bending, Race, Stop, Support, Unbalance};
 
 /// Distance from its stop, in clearances or travels, at which a ring that the rotor strikes is on it.
 const AT_STOP: f64 = 1e-3;
-
-/// Inner ring of a ball bearing, with the clearance added to the rotor's radius as its bore.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Race {
-    /// kg m^2.
-    pub inertia: f64,
-    /// Drag that doesn't depend on the speed, and holds at rest, N m.
-    pub dry_drag: f64,
-    /// Drag over speed, N m s.
-    pub viscous_drag: f64,
-}
 
 /// A ring and what holds it; without mount it is fixed, without race it doesn't turn. The mount's stop has no friction;
 /// a rigid one has no rebound, and one that gives way gives all back.
@@ -47,7 +36,7 @@ pub struct Retainer {
     pub restitution: f64,
     /// Under the ring.
     pub mount: Option<Support>,
-    /// In the ring.
+    /// In the ring, with the clearance added to the rotor's radius as its bore.
     pub race: Option<Race>,
     /// How its bore gives way, where it isn't rigid.
     pub press: Option<Press>,
@@ -85,36 +74,6 @@ fn at_stop(stop: Stop) -> Hold {
     }
 }
 
-/// Directions are those at spin angle 0, counter-clockwise from x.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Unbalance {
-    /// Of the centre of mass, m: the force m e w^2.
-    pub eccentricity: f64,
-    /// rad.
-    pub angle: f64,
-    /// Of the axis of inertia, rad: the moment (J_t - J_p) chi w^2.
-    pub skew: f64,
-    /// rad.
-    pub skew_angle: f64,
-}
-
-/// A bending mode of the free rotor.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bending {
-    /// Undamped, rad/s.
-    pub rate: f64,
-    /// Part of critical damping.
-    pub damping_ratio: f64,
-    /// With the shapes below, kg.
-    pub modal_mass: f64,
-    /// At each ring.
-    pub at_rings: Vec<f64>,
-    /// At each magnet.
-    pub at_magnets: Vec<f64>,
-    /// At the centre of mass.
-    pub at_centre: f64,
-}
-
 /// Rotor and surroundings, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CoupledMachine {
@@ -128,11 +87,11 @@ pub struct CoupledMachine {
     pub gravity: [f64; 2],
     /// One at least.
     pub retainers: Vec<Retainer>,
-    /// None by default.
+    /// The force m e w^2 and the moment (J_t - J_p) chi w^2; none by default.
     pub unbalance: Unbalance,
     /// Any number.
     pub magnets: Vec<Magnet>,
-    /// Any number.
+    /// Modes of the free rotor, any number.
     pub bending: Vec<Bending>,
     /// What it stands on, and is seen from, where that moves.
     pub base: Option<Base>,
@@ -176,9 +135,9 @@ impl CoupledMachine {
     }
 
     /// Parts of the bodies in the displacement of the axis.
-    fn axis(&self, place: f64, shape: impl Fn(&Bending) -> f64) -> Vec<f64> {
+    fn axis(&self, place: f64) -> Vec<f64> {
         let mut shares = vec![1.0, place];
-        shares.extend(self.bending.iter().map(shape));
+        shares.extend(self.bending.iter().map(|mode| mode.at(place)));
         shares.resize(self.bodies(), 0.0);
         shares
     }
@@ -196,7 +155,7 @@ impl CoupledMachine {
         for (i, ring) in self.retainers.iter().enumerate() {
             let body = 2 + self.bending.len() + i;
             let bore = ring.radius + ring.clearance;
-            let told = self.axis(ring.place, |mode| mode.at_rings[i]);
+            let told = self.axis(ring.place);
             walls.push(Link {
                 shares: with(told.clone(), body, -1.0),
                 arms: with(with(still.clone(), 0, ring.radius), 1 + i, -bore),
@@ -252,9 +211,9 @@ impl CoupledMachine {
             },
         ];
         bodies.extend(self.bending.iter().map(|mode| Body {
-            stiffness: [mode.modal_mass * mode.rate * mode.rate; 2],
-            damping: [2.0 * mode.damping_ratio * mode.modal_mass * mode.rate; 2],
-            turning: (mode.at_centre * centre, angle),
+            stiffness: [mode.mass * mode.speed * mode.speed; 2],
+            damping: [2.0 * mode.damping_ratio * mode.mass * mode.speed; 2],
+            turning: (mode.at(0.0) * centre, angle),
             ..Body::default()
         }));
         bodies.extend(self.retainers.iter().map(|it| {
@@ -266,9 +225,9 @@ impl CoupledMachine {
                 ..Body::default()
             }
         }));
-        let magnet = |(i, magnet): (usize, &Magnet)| Pull {
+        let magnet = |magnet: &Magnet| Pull {
             magnet: *magnet,
-            shares: self.axis(magnet.place, |mode| mode.at_magnets[i]),
+            shares: self.axis(magnet.place),
             on: magnet.on.is_none(),
             cut: [0.0; 2],
         };
@@ -277,7 +236,7 @@ impl CoupledMachine {
         Surroundings {
             polar_inertia: self.polar_inertia,
             bodies,
-            magnets: self.magnets.iter().enumerate().map(magnet).collect(),
+            magnets: self.magnets.iter().map(magnet).collect(),
             viscous_drags: [0.0].into_iter().chain(drags).collect(),
             base: self.base.is_some(),
         }
@@ -294,8 +253,9 @@ impl CoupledMachine {
         let mut mobility = vec![1.0 / self.mass, 1.0 / self.transverse_inertia];
         let mut size = vec![length, reach(&mut self.retainers.iter().map(|it| it.place))];
         for mode in &self.bending {
-            mobility.push(1.0 / mode.modal_mass);
-            size.push(reach(&mut mode.at_rings.iter().copied()));
+            mobility.push(1.0 / mode.mass);
+            let at_rings = self.retainers.iter().map(|it| mode.at(it.place));
+            size.push(reach(&mut { at_rings }));
         }
         for it in &self.retainers {
             mobility.push(over(it.mount.map(|mount| mount.mass)));

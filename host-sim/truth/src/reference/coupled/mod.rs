@@ -48,5 +48,5 @@ mod tape;
 mod unknown;
 
 pub use drop::{CoupledReference, CoupledStart, CoupledState, RingState};
-pub use machine::{Bending, CoupledMachine, Race, Retainer, Unbalance};
+pub use machine::{CoupledMachine, Retainer};
 pub use system::Mode;
