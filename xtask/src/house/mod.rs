@@ -23,8 +23,10 @@ const SHOWN: usize = 12;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Budget {
-    /// Lines of all crates together.
-    product_lines: usize,
+    /// Lines of all crates together, without those that were added on purpose.
+    asked_lines: usize,
+    /// Those, by what they are for.
+    added_lines: BTreeMap<String, usize>,
     /// Lines of a function that is not in the list of longer ones.
     function_lines: usize,
     /// How many functions may be longer than that.
@@ -86,7 +88,8 @@ pub fn run(rebuild: bool) -> anyhow::Result<()> {
         }
         all.extend(sources);
     }
-    limit("lines of the product", lines(&all), budget.product_lines);
+    let most = budget.asked_lines + budget.added_lines.values().sum::<usize>();
+    limit("lines of the product", lines(&all), most);
     let functions = longest(&all);
     let longer = functions.partition_point(|it| it.0 > budget.function_lines);
     let what = format!("functions above {} lines", budget.function_lines);

@@ -220,7 +220,6 @@ impl Scene {
             clearance: [clearance_a, clearance_b].map(f64::from),
             noise,
             seed: seed as u32,
-            ring: false,
             instants: Some([release_instants, impact_instants].map(|it| it as u8)),
             spin: Some(spin),
             mounting_angle,
@@ -229,7 +228,6 @@ impl Scene {
                 gain: [gain; 2],
                 skew,
             }),
-            fail: |_, _| {},
             fault: (kind != 0.0).then_some(Fault {
                 kind: kind as u32,
                 channel: channel as usize % CHANNELS,
@@ -237,6 +235,7 @@ impl Scene {
                 length: length as u32,
                 every: 1_000,
             }),
+            ..FLOATING
         }
     }
 

@@ -2,14 +2,10 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use super::config::HertzConfig;
-use touchdown_rotor::RigidConfig;
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::Real;
 use touchdown_rotor::scales::positive;
 
-/// Iterations of the search for a line contact's peak; each gains a digit or more.
-const ITERATIONS: usize = 60;
 /// Of Newton's method for its force: the third is exact to rounding.
 const POLISHINGS: usize = 3;
 
@@ -84,41 +80,6 @@ impl Contact {
             Self::LinePower { .. } => Shape::Spring,
         }
     }
-
-    /// K, N/m^n. 4/3 E* sqrt(R_eff) of a point, with R_eff = r R/(R - r) and R - r the clearance; pi E* L of a line.
-    pub(super) fn stiffness(self, config: &HertzConfig) -> Result<f64, ConfigError> {
-        let modulus = config.materials.contact_modulus()?;
-        let &RigidConfig {
-            mass,
-            radius,
-            clearance,
-            ..
-        } = &config.rigid;
-        let plane = |length| {
-            positive("length", length)?;
-            Ok(PI * modulus * length)
-        };
-        match self {
-            Self::Point => {
-                let curvature = radius / clearance * (radius + clearance);
-                Ok(4.0 / 3.0 * modulus * curvature.sqrt())
-            }
-            Self::Line { length } => {
-                let plane = plane(length)?;
-                logarithm(peak(config, plane)?, clearance)?;
-                Ok(plane)
-            }
-            Self::LinePower { length } => {
-                let plane = plane(length)?;
-                let mut secant = 1.0;
-                for _ in 0..ITERATIONS {
-                    let peak = config.fastest * (mass / (plane * secant)).sqrt();
-                    secant = logarithm(peak, clearance)? - 1.0;
-                }
-                Ok(plane / secant)
-            }
-        }
-    }
 }
 
 /// How the force grows with the depth: K times a function of it, d^n where nothing else is said. `gap` is the clearance in the
@@ -137,7 +98,7 @@ pub enum Shape {
 
 impl Shape {
     /// 2 n: twice the exponent of the force; of a line where l does not change.
-    const fn twice_exponent(self) -> i32 {
+    pub(super) const fn twice_exponent(self) -> i32 {
         match self {
             Self::Point => 3,
             Self::Line | Self::Spring => 2,
@@ -200,20 +161,6 @@ impl Shape {
         }
     }
 
-    /// The depth at which the fastest impact has come to rest; not for the step.
-    pub(super) fn deepest(self, config: &HertzConfig, stiffness: f64) -> f64 {
-        let (rigid, speed) = (&config.rigid, config.fastest);
-        if self == Self::Line {
-            // `stiffness` has refused what has no peak.
-            let peak = peak(config, stiffness).unwrap_or(0.0);
-            return self.depth(peak, rigid.clearance);
-        }
-        let parts = self.parts(0.0, 0.0);
-        let energy = 0.5 * parts * rigid.mass / stiffness * speed * speed;
-        let root = root(energy, self.twice_exponent() + 2);
-        root * root
-    }
-
     /// Duration of a contact without damping that comes to rest there, in units of deepest compression over entry speed.
     pub(super) fn duration(self, deepest: f64, power: f64) -> f64 {
         match self {
@@ -239,27 +186,6 @@ fn duration_of_line(most: f64) -> f64 {
     2.0 * PI * sum / (f64::from(POINTS) * most)
 }
 
-/// l at this force over pi E* L.
-fn logarithm(power: f64, gap: f64) -> Result<f64, ConfigError> {
-    let logarithm = Real::ln(4.0 * gap / power);
-    if logarithm <= 2.0 || !logarithm.is_finite() {
-        let rule = "long enough for the force of the fastest impact in this clearance";
-        return Err(ConfigError::OutOfRange("length", rule));
-    }
-    Ok(logarithm)
-}
-
-/// Peak force over pi E* L, m: the energy F^2/(2 K) (l - 3/2) is m V^2/2.
-fn peak(config: &HertzConfig, plane: f64) -> Result<f64, ConfigError> {
-    let spring = config.fastest * (config.rigid.mass / plane).sqrt();
-    let mut peak = spring;
-    for _ in 0..ITERATIONS {
-        let parts = logarithm(peak, config.rigid.clearance)? - 1.5;
-        peak = spring / parts.sqrt();
-    }
-    Ok(peak)
-}
-
 /// 1/(l - 1).
 fn share<R: Real>(depth: R, power: R) -> R {
     if depth > R::ZERO {
@@ -271,7 +197,7 @@ fn share<R: Real>(depth: R, power: R) -> R {
 
 /// The positive root of s^`degree` = `value`, for `value` of 0 or more: Newton's method, which falls
 /// onto the root once it is above it.
-fn root<R: Real>(value: R, degree: i32) -> R {
+pub(super) fn root<R: Real>(value: R, degree: i32) -> R {
     const ITERATIONS: usize = 200;
     if value <= R::ZERO {
         return R::ZERO;
