@@ -550,6 +550,14 @@ fn a_configuration_has_to_fit_the_board() {
         other.detector.tuning.release_instants = instants;
         assert_eq!(board.misfit(&other), misfit, "{instants}");
     }
+    let mut other = fits;
+    other.detector.tuning.impact_instants = 17;
+    assert_eq!(board.misfit(&other), Some("impact_instants"));
+    let emulated = Abilities {
+        cycles: f32::INFINITY,
+        ..board
+    };
+    assert_eq!(emulated.misfit(&other), None);
 }
 
 /// By as much as where the code lies in flash moves it.

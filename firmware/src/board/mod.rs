@@ -58,6 +58,10 @@ impl Abilities {
             Some("marks")
         } else if cost::floating(&config.detector) > self.cycles {
             Some("release_instants")
+        } else if self.cycles.is_finite()
+            && config.detector.tuning.impact_instants > cost::IMPACT_INSTANTS
+        {
+            Some("impact_instants")
         } else {
             None
         }

@@ -33,9 +33,9 @@ const FIELDS: [Field; 24] = [
     ("seed", 1.0, 1e6, true),
     ("speed_known", 0.0, 1.0, true),
     ("levitation_known", 0.0, 1.0, true),
-    // Of each bank: as many as a board with an F405 accepts, and as any configuration may have.
+    // Of each bank: as many as a board with an F405 accepts.
     ("release_instants", 4.0, 16.0, true),
-    ("impact_instants", 4.0, 32.0, true),
+    ("impact_instants", 4.0, 16.0, true),
     ("spin", -6_000.0, 6_000.0, false),
     ("mounting_angle", -0.8, 0.8, false),
     // Of all channels, by a commissioning check.
