@@ -4,6 +4,8 @@ use std::ops::RangeInclusive;
 
 use touchdown_base::plain::Number;
 
+use Limit::{AboveZero, Between, Within};
+
 /// What a number must be.
 #[derive(Clone, Debug)]
 pub enum Limit {
@@ -14,9 +16,6 @@ pub enum Limit {
     /// In a range.
     Between(RangeInclusive<f64>),
 }
-
-use Limit::{AboveZero, Between, Within};
-
 impl Limit {
     /// The rule that a number breaks, if it does.
     pub(super) fn broken(&self, value: f64) -> Option<String> {
@@ -135,3 +134,52 @@ const DAMPING_N_S_M: RangeInclusive<f64> = 0.0..=1e9;
 const PLACE_MM: RangeInclusive<f64> = -1e5..=1e5;
 /// Polar over transverse inertia; 2 for a thin disc.
 pub const GYROSCOPIC_RATIO: RangeInclusive<f64> = 1e-6..=2.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of docs/use/scene.md: table, key and range of each row whose range is two numbers.
+    fn told() -> Vec<(String, String, RangeInclusive<f64>)> {
+        let text = include_str!("../../../docs/use/scene.md");
+        let (mut table, mut all) = (String::new(), vec![]);
+        for line in text.lines().filter(|it| it.starts_with('|')) {
+            let cells: Vec<_> = line.trim_matches('|').split('|').map(str::trim).collect();
+            let names = cells[0].split('`').skip(1).step_by(2);
+            if cells[0].starts_with("**") {
+                table = names
+                    .map(|it| it.trim_matches(['[', ']']).to_owned())
+                    .collect();
+                continue;
+            }
+            let range = cells.get(3).and_then(|it| it.split_once(" to "));
+            let Some((low, high)) = range else { continue };
+            // Where keys of several units share a row, the range is the first one's.
+            let most = if cells[1].contains(',') { 1 } else { 9 };
+            if let (Ok(low), Ok(high)) = (low.parse(), high.parse()) {
+                let keys = names.take(most);
+                all.extend(keys.map(|key| (table.clone(), key.to_owned(), low..=high)));
+            }
+        }
+        all
+    }
+
+    /// Those of sensors, detector and guard are their own.
+    #[test]
+    fn the_ranges_of_the_documentation_are_these() {
+        let mut held = 0;
+        for (table, key, range) in told() {
+            match of_scene(&table, &key) {
+                Some(Between(its) | Within(its)) => assert_eq!(its, range, "[{table}] {key}"),
+                Some(AboveZero) => panic!("[{table}] {key} has no range"),
+                None => {
+                    let elsewhere = ["sensors", "detector", "guard"].contains(&&*table);
+                    assert!(elsewhere, "[{table}] {key} has no limit");
+                    continue;
+                }
+            }
+            held += 1;
+        }
+        assert!(held > 40, "{held}");
+    }
+}

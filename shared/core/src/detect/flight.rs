@@ -1,18 +1,20 @@
-//! In the air: follows the path, finds impacts, and foresees the end of the bounce series.
+//! In the air: follows the path, takes impacts in, and foresees the end of the bounce series.
 
+mod impact;
+
+use self::impact::{Hit, is_of_a_wall};
 use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::give::{OpenTouch, TouchStage};
-use crate::detect::impact_test::{Approach, JumpBank, JumpTest};
+use crate::detect::jump_test::{Approach, JumpBank, JumpTest};
 use crate::detect::lift_off::Lifted;
 use crate::detect::measurement::Measurement;
-use crate::detect::next_impact::NextImpact;
 use crate::detect::retainer_wall::{RetainerWall, ToldWall};
-use crate::detect::series::{Bounce, Series};
-use crate::detect::track::{Ballistic, Jump, Pull, Track};
+use crate::detect::series::Series;
+use crate::detect::track::{Ballistic, Pull, Track};
 use crate::event::Moment;
-use crate::vector::{direction, length, less, square, sum};
+use crate::vector::{direction, length};
 use core::f32::consts::TAU;
-use touchdown_rotor::real::{root, sqrt};
+use touchdown_rotor::real::sqrt;
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -22,19 +24,11 @@ const SERIES_MARGIN: f32 = 5e-4;
 /// Times that of `dwell`, near the wall without impact, after which it is contact whatever was foreseen: a wall that hardly
 /// presses, or gravity seen the wrong way round, foresees anything.
 const OVERDUE: u32 = 4;
-/// Part of a flight on a flat wall after which the curved wall of a retainer may be met.
-const IMPOSSIBLE: f32 = 0.3;
-/// Part of the faintest impact's speed that one which is foreseen has to have.
-const FAINTER: f32 = 0.42;
-/// Part of gravity that a wall is taken to press with at least.
-const LEAST_PRESSING: f32 = 0.1;
 /// What the acceleration of a flight may differ from told gravity by, m/s^2: magnets that carry a part, a side pull, negative
 /// stiffness.
 const PULL_ERROR: f32 = 5.0;
 /// Pull of magnets without control at the wall, one standard deviation, m/s^2.
 const PULL_AT_WALL: f32 = 10.0;
-/// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
-const STEADY: f32 = 0.2;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
@@ -125,9 +119,7 @@ impl Airborne {
         self.shown = None;
         self.touch = None;
         self.met = None;
-        self.near_wall = 0;
-        self.seen_near = 0;
-        self.lying = 0;
+        (self.near_wall, self.seen_near, self.lying) = (0, 0, 0);
         self.lifted = None;
     }
 
@@ -181,22 +173,6 @@ pub(crate) struct Landing {
     pub(crate) age: f32,
     /// Speed into the wall of an impact, m/s.
     pub(crate) impact: Option<f32>,
-}
-
-/// A jump that is an impact.
-#[derive(Clone, Copy, Debug)]
-struct Hit {
-    bounce: Bounce,
-    /// Samples since, for its event.
-    age: f32,
-    /// Whether the impacts before it say more of it than it shows.
-    foreseen: bool,
-    /// With which the flight before it had left the wall, m/s; 0 where it is the first.
-    launch_speed: f32,
-    /// m.
-    place: [f32; 2],
-    /// Variance of that, m^2, where it shows the wall: it ended a fall.
-    shown: Option<f32>,
 }
 
 impl FlightTest {
@@ -398,8 +374,7 @@ impl FlightTest {
             restitution: flight.series.restitution(&self.machine),
             is_sudden: !flight.gives && !is_clear,
         };
-        let jump = self.jumps.take(&mut flight.bank, &innovation, &approach);
-        if let Some(jump) = jump {
+        if let Some(jump) = self.jumps.take(&mut flight.bank, &innovation, &approach) {
             let by_wall = !is_clear && is_of_a_wall(&jump, outward);
             let impact = by_wall.then(|| self.judge(flight, &jump, measurement, open));
             flight.track.shift(&jump, jump.age * self.period);
@@ -480,9 +455,7 @@ impl FlightTest {
             let velocity = flight.track.velocity;
             (flight.series).left(measurement.now, velocity, &self.machine, self.period);
             flight.bank.restart();
-            flight.near_wall = 0;
-            flight.seen_near = 0;
-            flight.lying = 0;
+            (flight.near_wall, flight.seen_near, flight.lying) = (0, 0, 0);
         }
         None
     }
@@ -504,8 +477,7 @@ impl FlightTest {
         flight.lifted = None;
         flight.met = Some(hit.bounce.at);
         flight.touch = (!flight.is_rigid).then(|| OpenTouch::new(direction(hit.place), way));
-        flight.seen_near = 0;
-        flight.lying = 0;
+        (flight.seen_near, flight.lying) = (0, 0);
         Landing {
             age: hit.age,
             impact: Some(hit.bounce.normal_speed),
@@ -543,123 +515,16 @@ impl FlightTest {
         }
     }
 
-    /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
-    /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
-    /// it finds after the time t in which a fall is found, as a jump of pressing times t.
-    fn judge(
-        &self,
-        flight: &Airborne,
-        jump: &Jump,
-        measurement: &Measurement,
-        open: Option<(Moment, [f32; 2])>,
-    ) -> Option<Hit> {
-        let since = jump.age * self.period;
-        let mut after = flight.track;
-        after.shift(jump, since);
-        let [u, v] = after.velocity_before(since);
-        let before = less([u, v], jump.change);
-        let stretch = if flight.gives { GROWS } else { 1.0 };
-        let earlier = (stretch - 1.0) * since;
-        let offset = after.offset_before(since + earlier);
-        let centre = less(after.position_before(since), before.map(|it| it * earlier));
-        let place = sum(centre, offset);
-        let (outward, n) = self.outward(flight, place);
-        let (_, radius) = direction(place);
-        let normal_speed = self::along(sum(before, after.circling(offset)), outward);
-        let along = v * outward[0] - u * outward[1];
-        let pull = after.acceleration;
-        let mut bounce = Bounce {
-            at: measurement.now.later(-stretch * jump.age),
-            normal_speed,
-            along,
-            outward,
-            pull,
-            normal_acceleration: along * along / self.machine.clearance
-                + self::along(pull, outward),
-        };
-        let mut age = stretch * jump.dated;
-        let mut least = self.min_detectable_speed(
-            bounce.normal_acceleration,
-            measurement.variance * flight.bank.threshold_scale,
-        );
-        let mut launch_speed = 0.0;
-        let mut foreseen = false;
-        if let Some(last) = flight.series.last() {
-            let flown = bounce.at.since(last.at) * self.period;
-            if flown < IMPOSSIBLE * self.flat_flight(last, flight.series.launch) {
-                return None;
-            }
-            let [u, v] = [before[0] - pull[0] * flown, before[1] - pull[1] * flown];
-            launch_speed = -(u * last.outward[0] + v * last.outward[1]);
-            let next = NextImpact::of(
-                &flight.series,
-                bounce.normal_acceleration,
-                &self.machine,
-                self.period,
-            );
-            if let Some(next) = next.filter(|it| it.is(&bounce, age)) {
-                foreseen = next.is_weak(&bounce, least);
-                if foreseen {
-                    age = next.age(measurement.now, age);
-                    bounce.at = measurement.now.later(-age);
-                    bounce.normal_speed = next.speed;
-                    least *= FAINTER;
-                }
-            }
-        }
-        let is_steady = |(onset, home)| {
-            let time = bounce.at.since(onset) * self.period;
-            is_steady(less(place, home), before, pull, time)
-        };
-        let shows = open.is_none_or(is_steady);
-        let near = if shows {
-            flight.wall.nearest(n, &self.told)
-        } else {
-            self.near(flight, n)
-        };
-        let is_hit = radius >= near && bounce.normal_speed > least;
-        is_hit.then_some(Hit {
-            bounce,
-            age,
-            foreseen,
-            launch_speed,
-            place,
-            shown: shows.then(|| {
-                let earlier = earlier * bounce.normal_speed;
-                after.spread(0.0) * after.spread(0.0) + earlier * earlier
-            }),
-        })
-    }
-
-    /// How long the flight after an impact would last on a flat wall, s: it leaves with the speed v = `launch` and comes
-    /// back after 2 v/(v_t^2/rho + v^2/rho + g), however the wall turns.
-    fn flat_flight(&self, last: &Bounce, launch: f32) -> f32 {
-        let squares = last.along * last.along + launch * launch;
-        let back = squares / self.machine.clearance + length(last.pull);
-        if back > 0.0 { 2.0 * launch / back } else { 0.0 }
-    }
-
     /// Whether it goes outward faster than one that lies on the wall, under its weight at least, seems to.
     fn is_about_to_hit(&self, flight: &Airborne, measurement: &Measurement) -> bool {
         let (track, threshold_scale) = (&flight.track, flight.bank.threshold_scale);
         let ([x, y], _) = self.outward(flight, track.seen());
         let [u, v] = track.velocity;
         let along = v * x - u * y;
-        let normal_acceleration =
+        let pressing =
             along * along / self.machine.clearance + self::along(track.acceleration, [x, y]);
-        let normal_acceleration = normal_acceleration.max(self.slowest);
-        u * x + v * y
-            > self.min_detectable_speed(normal_acceleration, measurement.variance * threshold_scale)
-    }
-
-    /// Speed below which an impact cannot be told from lying on the wall, m/s.
-    fn min_detectable_speed(&self, normal_acceleration: f32, variance: f32) -> f32 {
-        let a = normal_acceleration.max(LEAST_PRESSING * self.machine.gravity);
-        if a <= 0.0 {
-            return 0.0;
-        }
-        let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
-        a * root::<5>(fifth)
+        let noise = measurement.variance * threshold_scale;
+        u * x + v * y > self.min_detectable_speed(pressing.max(self.slowest), noise)
     }
 
     /// Samples since it has come to lie on the wall.
@@ -700,19 +565,6 @@ impl FlightTest {
     }
 }
 
-/// Whether way (m), velocity and acceleration are those of one acceleration since `time` (s): magnets that hold change it.
-fn is_steady(way: [f32; 2], velocity: [f32; 2], acceleration: [f32; 2], time: f32) -> bool {
-    let gone = [0, 1].map(|axis| (velocity[axis] - 0.5 * acceleration[axis] * time) * time);
-    square(way, gone) < STEADY * STEADY * square(way, [0.0; 2])
-}
-
-/// Whether a wall can have made a jump: it pushes inward, and its friction gives less than that across.
-fn is_of_a_wall(jump: &Jump, [x, y]: [f32; 2]) -> bool {
-    let [u, v] = jump.change;
-    let across = (v * x - u * y).abs();
-    across < FASTER * sqrt(jump.variance) - (u * x + v * y)
-}
-
 /// Part of `vector` along a unit vector.
 fn along([u, v]: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     u * x + v * y
@@ -723,6 +575,7 @@ mod tests {
     use super::*;
     use crate::config::Tuning;
     use crate::detect::noise::white;
+    use crate::detect::series::Bounce;
     use crate::detect::series::tests::MACHINE;
 
     fn test(sample_rate: f32) -> FlightTest {

@@ -10,7 +10,8 @@
 //! | `release` | whether it still floats |
 //! | `fall` | whether it falls |
 //! | `track` | position and velocity in flight |
-//! | `impact_test` | whether the velocity jumped: an impact |
+//! | `jump_test` | whether the velocity jumped |
+//! | `flight` | the path in the air; `flight::impact`: which jump is an impact |
 //! | `give` | whether the wall gives way, and how long a touch lasts |
 //! | `series` | when the bounces will have died out |
 //! | `retainer_wall` | where the wall is |
@@ -33,7 +34,7 @@ mod event_writer;
 mod fall;
 mod flight;
 mod give;
-mod impact_test;
+mod jump_test;
 mod levitation;
 mod lift_off;
 mod measurement;
