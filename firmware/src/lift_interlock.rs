@@ -38,9 +38,11 @@ pub struct LiftInterlock {
     ends: [End; PLANES],
     /// Whether there were places in the last sample: `ends` is not the default.
     has_counted: bool,
+    /// Whether the next sample is taken of the second end.
+    of_b: bool,
 }
 
-/// Where an end is, m, and since how many samples.
+/// Where an end is, m, and since how many of its samples.
 #[derive(Clone, Copy, Debug, Default)]
 struct End {
     /// Within the swing.
@@ -50,12 +52,17 @@ struct End {
     anchored: u32,
     place: [f32; 2],
     anchor: [f32; 2],
+    /// Whether it has been low, and slow, for long.
+    is_low: bool,
+    is_slow: bool,
 }
 
 impl LiftInterlock {
     /// For the detector's machine and the fitted channels (one bit each).
     pub fn new(detector: &DetectorConfig, fitted: u8) -> Self {
-        let (rate, clearance) = (detector.sample_rate, detector.machine.clearance);
+        // Every other sample is of an end.
+        let rate = detector.sample_rate / PLANES as f32;
+        let clearance = detector.machine.clearance;
         let square_of = |part: f32| (part * clearance) * (part * clearance);
         Self {
             samples: (TIME * rate) as u32,
@@ -68,6 +75,7 @@ impl LiftInterlock {
             rests: [false; PLANES],
             ends: [End::default(); PLANES],
             has_counted: false,
+            of_b: false,
         }
     }
 
@@ -100,18 +108,24 @@ impl LiftInterlock {
             }
             return false;
         };
+        let [a, b] = places;
+        if self.of_b {
+            self.follow(1, b);
+        } else {
+            self.follow(0, a);
+        }
+        self.of_b = !self.of_b;
         let mut all_lie = phases.into_iter().any(|it| it >= Phase::FreeFall);
-        for (at, (place, phase)) in places.into_iter().zip(phases).enumerate() {
-            let (is_low, is_slow) = self.follow(at, place);
+        for (at, (it, phase)) in self.ends.iter().zip(phases).enumerate() {
             let rests = self.rests[at] || !self.seen[at];
-            all_lie &=
-                phase.is_contact() && (is_low || rests) || is_slow && (is_low || !self.has_weight);
+            all_lie &= phase.is_contact() && (it.is_low || rests)
+                || it.is_slow && (it.is_low || !self.has_weight);
         }
         all_lie
     }
 
-    /// Whether an end has been low, and slow, for long.
-    fn follow(&mut self, at: usize, place: [f32; 2]) -> (bool, bool) {
+    /// Takes the place of an end.
+    fn follow(&mut self, at: usize, place: [f32; 2]) {
         let it = &mut self.ends[at];
         let [x, y] = place;
         let out = x * x + y * y;
@@ -128,7 +142,7 @@ impl LiftInterlock {
         if !is_anchored {
             it.anchor = it.place;
         }
-        (it.within >= self.samples, it.slow >= self.samples)
+        (it.is_low, it.is_slow) = (it.within >= self.samples, it.slow >= self.samples);
     }
 }
 
