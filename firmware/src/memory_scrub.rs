@@ -2,18 +2,17 @@
 
 use core::ptr::from_ref;
 
-use crc::Digest;
-use touchdown_core::checksum::CRC;
-
 /// Bytes that a step takes in.
 pub const WORD_BYTES: usize = size_of::<u32>();
+/// An odd number, whose product with each number is another one: a single word that changes always shows.
+const SPREAD: u32 = 0x9e37_79b1;
 
 /// Checks a value where it lies over and over, a word a step, against what it was when [`MemoryScrub::learn`] saw it.
 #[derive(Default)]
 pub struct MemoryScrub {
     at: usize,
     /// Of what was taken in of this pass.
-    digest: Option<Digest<'static, u32>>,
+    checksum: u32,
     known: Option<u32>,
 }
 
@@ -40,14 +39,13 @@ impl MemoryScrub {
         // SAFETY: `at` is within the value, which has whole words. Between its fields may be bytes that nobody wrote: a
         // volatile access takes them as they are.
         let word = unsafe { words.add(self.at).read_volatile() };
-        let digest = self.digest.get_or_insert_with(|| CRC.digest());
-        digest.update(&word.to_le_bytes());
+        self.checksum = (self.checksum ^ word).rotate_left(13).wrapping_mul(SPREAD);
         self.at += 1;
         if self.at < Self::steps::<T>() {
             return None;
         }
         self.at = 0;
-        let checksum = self.digest.take()?.finalize();
+        let checksum = core::mem::take(&mut self.checksum);
         Some(*self.known.get_or_insert(checksum) == checksum)
     }
 
