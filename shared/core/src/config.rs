@@ -122,6 +122,11 @@ impl DetectorConfig {
 }
 
 impl MachineConfig {
+    /// Slip that friction takes off, m/s, for each m/s that the wall takes off the speed into it.
+    pub(crate) fn slip_per_impulse(&self) -> f32 {
+        self.friction * (1.0 + 1.0 / self.inertia_ratio)
+    }
+
     fn validate(&self) -> Result<(), ConfigError> {
         positive("mass", self.mass)?;
         positive("clearance", self.clearance)?;

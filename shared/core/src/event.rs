@@ -14,10 +14,14 @@ impl Moment {
 
     /// So many samples (not whole) later; earlier where negative.
     pub const fn later(self, samples: f32) -> Self {
-        Self(self.0.saturating_add((samples * 256.0) as i64))
+        // In two parts, as the target converts to 32 bits in one instruction.
+        let whole = samples as i32;
+        let part = ((samples - whole as f32) * 256.0) as i32;
+        Self(self.0.saturating_add(((whole as i64) << 8) + part as i64))
     }
 
     /// Samples from `earlier` to here.
+    #[inline(never)] // else the image is larger
     pub fn since(self, earlier: Self) -> f32 {
         // Spans of more than a few hours of samples saturate; none is compared that is so long.
         let span = self.0.saturating_sub(earlier.0);

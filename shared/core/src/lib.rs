@@ -15,6 +15,7 @@ pub mod forecast;
 pub mod guard;
 pub mod health;
 pub mod learnt;
+mod memory;
 pub mod monitor;
 pub mod phase;
 pub mod sample;

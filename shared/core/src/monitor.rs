@@ -195,7 +195,9 @@ impl Monitor {
             [None; PLANES]
         };
         state.lacks = reading.unusable != 0;
-        state.faults += u64::from(reading.unusable.count_ones());
+        if state.lacks {
+            state.faults += u64::from(reading.unusable.count_ones());
+        }
         (reading, signals)
     }
 

@@ -42,7 +42,10 @@ pub struct Severity {
 pub(crate) struct SeverityModel {
     machine: MachineConfig,
     period: f32,
-    unit: f32,
+    /// Inverse of the unit of the velocity index, s/m.
+    per_unit: f32,
+    /// Variance up to which a velocity counts, (m/s)^2.
+    well_known: f32,
 }
 
 /// What an episode carries from tick to tick.
@@ -62,14 +65,17 @@ impl SeverityModel {
     pub(crate) fn new(config: &DetectorConfig) -> Self {
         let machine = config.machine;
         let unit = sqrt(machine.gravity * machine.clearance);
+        let unit = if unit > 0.0 { unit } else { DRIFT };
         Self {
             machine,
             period: 1.0 / config.sample_rate,
-            unit: if unit > 0.0 { unit } else { DRIFT },
+            per_unit: 1.0 / unit,
+            well_known: (WELL_KNOWN * unit) * (WELL_KNOWN * unit),
         }
     }
 
     /// After a tick that gave `notices`.
+    #[inline]
     pub(crate) fn take(&self, state: &mut SeverityState, strain: &Exposure, notices: &[Notice]) {
         if strain.is_released && !state.was_released {
             *state = SeverityState {
@@ -88,14 +94,14 @@ impl SeverityModel {
         }
         self.contact(state, strain);
         let so_far = &mut state.so_far;
-        if strain.speed_error < WELL_KNOWN * self.unit {
-            so_far.velocity_index = so_far.velocity_index.max(strain.speed / self.unit);
+        if strain.speed_variance < self.well_known {
+            so_far.velocity_index = so_far.velocity_index.max(strain.speed * self.per_unit);
         }
         let followed = |rate: &f32| rate.abs() * self.period < FOLLOWED;
         if let Some(rate) = strain.whirl.filter(followed) {
             let machine = &self.machine;
             let load = machine.mass * (machine.clearance * rate * rate + machine.gravity);
-            let frequency = rate.abs() / core::f32::consts::TAU;
+            let frequency = rate.abs() * (1.0 / core::f32::consts::TAU);
             so_far.whirl_frequency = so_far.whirl_frequency.max(frequency);
             so_far.whirl_load = so_far.whirl_load.max(load);
         }
@@ -108,7 +114,7 @@ impl SeverityModel {
                 state.speeds += event.normal_speed;
                 so_far.impacts = so_far.impacts.saturating_add(1);
                 so_far.impact_speed = so_far.impact_speed.max(event.normal_speed);
-                self.impulses(state, strain.restitution);
+                self.impulses(state, strain);
             }
             EventKind::LiftOff => {
                 // It was over before it was declared; another end may have been in contact since then.
@@ -130,14 +136,15 @@ impl SeverityModel {
             let samples = age.min(u32::from(state.uncounted));
             state.so_far.dwell += samples as f32 * self.period;
             if state.uncounted > 1 {
-                state.speeds += strain.ahead;
-                self.impulses(state, strain.restitution);
+                state.speeds += strain.series.yet_to_come(&self.machine);
+                self.impulses(state, strain);
             }
             state.uncounted = 0;
         }
     }
 
-    fn impulses(&self, state: &mut SeverityState, restitution: f32) {
+    fn impulses(&self, state: &mut SeverityState, strain: &Exposure) {
+        let restitution = strain.series.restitution(&self.machine);
         let per_speed = self.machine.mass * (1.0 + restitution);
         state.so_far.impulse = per_speed * state.so_far.impact_speed;
         state.so_far.total_impulse = per_speed * state.speeds;

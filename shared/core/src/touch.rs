@@ -149,35 +149,40 @@ impl Touches {
             return;
         }
         let peak = if a.last > b.last { a.last } else { b.last };
-        let goes_on = state.open.is_some();
-        let Some(mut touch) = state.open.or(at_wall.map(|plane| Touch {
-            number: state.count as u16,
-            plane,
-            onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
-            declared: sample,
-            end: None,
-            peak,
-        })) else {
-            return;
-        };
-        if peak > touch.peak {
-            touch.peak = peak;
-        }
-        state.open = at_wall.map(|plane| {
-            if plane != touch.plane {
-                touch.plane = Plane::Both;
+        let touch = match (&mut state.open, at_wall) {
+            (None, None) => return,
+            (None, Some(plane)) => {
+                let touch = Touch {
+                    number: state.count as u16,
+                    plane,
+                    onset: sample.saturating_sub(u64::from(IN_A_ROW) - 1),
+                    declared: sample,
+                    end: None,
+                    peak,
+                };
+                state.open = Some(touch);
+                state.count = state.count.saturating_add(1);
+                touch
             }
-            touch
-        });
-        if state.open.is_none() {
-            touch.declared = sample;
-            touch.end = Some(sample.saturating_sub(u64::from(IN_A_ROW)));
-            self.judge(state, &touch);
-        } else if goes_on {
-            return;
-        } else {
-            state.count = state.count.saturating_add(1);
-        }
+            (Some(open), Some(plane)) => {
+                open.peak = if peak > open.peak { peak } else { open.peak };
+                if plane != open.plane {
+                    open.plane = Plane::Both;
+                }
+                return;
+            }
+            (Some(open), None) => {
+                let touch = Touch {
+                    declared: sample,
+                    end: Some(sample.saturating_sub(u64::from(IN_A_ROW))),
+                    peak: if peak > open.peak { peak } else { open.peak },
+                    ..*open
+                };
+                state.open = None;
+                self.judge(state, &touch);
+                touch
+            }
+        };
         // There is room for all that a tick can say; without it nothing else may suffer.
         let _ = notices.push(Notice::Touch(touch));
     }

@@ -6,7 +6,8 @@ use touchdown_rotor::real::sqrt;
 pub(crate) fn direction([x, y]: [f32; 2]) -> ([f32; 2], f32) {
     let radius = length([x, y]);
     if radius > 0.0 {
-        ([x / radius, y / radius], radius)
+        let per_radius = 1.0 / radius;
+        ([x * per_radius, y * per_radius], radius)
     } else {
         ([0.0, -1.0], 0.0)
     }

@@ -11,10 +11,9 @@ use crate::detect::signals::{Retainer, Signals};
 use crate::detect::slip::{Finding, Slip, Verdict};
 use crate::detect::still::Still;
 use crate::detect::track::Pull;
-use crate::detect::wall::{Cusum, WallAngle, WallFilter, WallTrack};
+use crate::detect::wall::{Cusum, Hypotheses, WallAngle, WallFilter, WallTrack};
 use crate::event::EventKind;
-use crate::vector::direction;
-use touchdown_rotor::real::sqrt;
+use crate::vector::{direction, length};
 
 /// Slip, m/s, that a speed sensor resolves.
 const SLIP_RESOLUTION: f32 = 0.02;
@@ -33,6 +32,9 @@ const SWINGS: f32 = 0.3;
 const ASIDE: f32 = 0.1;
 const BACK: f32 = 0.9;
 
+/// Part of the way to where it was seen that the wall's place goes in a sample, once it is known well.
+const PART: f32 = 1.0 / MEMORY.samples as f32;
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactTest {
@@ -41,6 +43,9 @@ pub(crate) struct ContactTest {
     period: f32,
     threshold: f32,
     still_samples: u32,
+    /// Slip that friction takes off, per speed into the wall.
+    per_impulse: f32,
+    per_clearance: f32,
     /// m.
     pub(crate) nearest: f32,
 }
@@ -81,12 +86,12 @@ struct Turning {
 }
 
 impl Turning {
-    /// Follows the angle turned (rad) and the cosine of that from the bottom; true where it has come back by `clear`
-    /// from a turning point.
-    fn take(&mut self, angle: f32, cos: f32, clear: f32) -> bool {
+    /// Follows the angle turned (rad) and the cosine of that from the bottom; true where it has come back from a turning
+    /// point by an angle that this is the square of.
+    fn take(&mut self, angle: f32, cos: f32, clear_square: f32) -> bool {
         self.age = self.age.saturating_add(1);
         let way = angle - self.angle;
-        let is_clear = way.abs() > clear;
+        let is_clear = way * way > clear_square;
         if self.direction == 0.0 {
             if !is_clear {
                 return false;
@@ -111,6 +116,8 @@ impl ContactTest {
             period: 1.0 / config.sample_rate,
             threshold,
             still_samples: (config.tuning.still_time * config.sample_rate).max(16.0) as u32,
+            per_impulse: config.machine.slip_per_impulse(),
+            per_clearance: 1.0 / config.machine.clearance,
             nearest: NEAREST_WALL * config.machine.clearance,
         }
     }
@@ -142,7 +149,7 @@ impl ContactTest {
         &self,
         state: &mut Touching,
         wall: &mut RetainerWall,
-        pull: (Pull, bool),
+        pull: (&Pull, bool),
         measurement: Option<&Measurement>,
         signals: &Signals,
     ) -> Findings {
@@ -162,7 +169,12 @@ impl ContactTest {
             });
         }
         let sample = measurement.map(|measurement| (measurement.position, measurement.variance));
-        self.filter.take(&mut state.track, sample, slip);
+        let followed = match (spin, signals.retainer, state.kind) {
+            (Some(_), Retainer::Fixed, Some(EventKind::Rolling)) => Hypotheses::Rolling,
+            (Some(_), Retainer::Fixed, _) => Hypotheses::Sliding,
+            _ => Hypotheses::Both,
+        };
+        self.filter.take(&mut state.track, sample, slip, followed);
         if let Some(age) = measurement.and_then(|it| self.lift_off(state, wall, it)) {
             return [Some((EventKind::LiftOff, age)), None];
         }
@@ -190,23 +202,22 @@ impl ContactTest {
             self.threshold,
         );
         if lift.is_at_wall() {
-            if beside.variance > variance / MEMORY {
+            if beside.variance > variance * PART {
                 wall.learn(&beside, variance);
             } else {
-                wall.follow(&beside, 1.0 / MEMORY);
+                wall.follow(&beside, PART);
             }
         }
         // A slow lift took the wall along.
         let is_carried = lift.is_settled() && lift.lately < self.nearest;
-        found.or_else(|| is_carried.then_some(MEMORY))
+        found.or_else(|| is_carried.then_some(MEMORY.samples as f32))
     }
 
     /// `slip` as against a wall that does not turn, m/s, where measured.
     fn kind(&self, state: &mut Touching, slip: Option<f32>) -> Option<Finding> {
         let swing = state.swing();
         let normal_acceleration = self.normal_acceleration(swing);
-        let per_impulse = self.machine.friction * (1.0 + 1.0 / self.machine.inertia_ratio);
-        let taken = per_impulse * normal_acceleration.max(0.0) * self.period;
+        let taken = self.per_impulse * normal_acceleration.max(0.0) * self.period;
         state.slip_left -= taken;
         let found = match slip {
             _ if state.slip.is_some() => self.by_slip(state, taken),
@@ -216,10 +227,13 @@ impl ContactTest {
             }
             Some(_) => {
                 state.slow = state.slow.saturating_add(1);
-                let long = state.slow > self.still_samples / 10;
-                // Friction had to take the rest off first.
-                let age = state.slow as f32 - SLIP_RESOLUTION / taken;
-                long.then_some((EventKind::Rolling, age.max(0.0)))
+                let is_new = state.kind != Some(EventKind::Rolling);
+                let is_long = state.slow > self.still_samples / 10;
+                (is_new && is_long).then(|| {
+                    // Friction had to take the rest off first.
+                    let age = state.slow as f32 - SLIP_RESOLUTION / taken;
+                    (EventKind::Rolling, age.max(0.0))
+                })
             }
             None if state.slip_left > 0.0 => Some((EventKind::Sliding, 0.0)),
             None if state.too_fast && state.kind.is_some() => None,
@@ -272,27 +286,32 @@ impl ContactTest {
     /// Whether it is bound to go round: it has the energy to pass the highest place against the pull with the wall still
     /// pressing. Friction that drives it only adds to that, and rolling takes less, so no more need be known than the way of
     /// the slip.
-    fn goes_round(&self, state: &Touching, pull: Pull, slip: f32) -> bool {
+    fn goes_round(&self, state: &Touching, pull: &Pull, slip: f32) -> bool {
         let swing = state.swing();
+        let enough = |rate: f32, pull: f32| self.machine.clearance * rate * rate >= pull;
+        // Whatever the pull and wherever it is now.
+        if swing.rate * slip >= 0.0 || !enough(swing.rate, 3.0 * pull.error) {
+            return false;
+        }
         let rate = swing.rate.abs() - SURE * state.track.rate_spread();
-        let ([x, y], strength) = direction(pull.acceleration);
+        let [x, y] = pull.acceleration;
         let [u, v] = state.outward();
-        let down = strength * (x * u + y * v);
-        let over_the_top = (3.0 * (strength + pull.error) + 2.0 * down) / self.machine.clearance;
-        rate > 0.0 && swing.rate * slip < 0.0 && rate * rate >= over_the_top
+        let (strength, down) = (length(pull.acceleration), x * u + y * v);
+        rate > 0.0 && enough(rate, 3.0 * (strength + pull.error) + 2.0 * down)
     }
 
     fn regime(
         &self,
         state: &mut Touching,
-        (pull, is_whole): (Pull, bool),
+        (pull, is_whole): (&Pull, bool),
         measurement: &Measurement,
         [surface, slip]: [f32; 2],
     ) -> Option<Finding> {
         let swing = *state.swing();
         let block = state.still.take(measurement.position, self.still_samples);
-        let clear = CLEAR_SWING * sqrt(measurement.variance) / self.machine.clearance;
-        let turned_back = state.turning.take(swing.turned, swing.cos, clear);
+        let clear = CLEAR_SWING * self.per_clearance;
+        let clear_square = clear * clear * measurement.variance;
+        let turned_back = state.turning.take(swing.turned, swing.cos, clear_square);
         let lowest = if state.turning.cos < ASIDE {
             BACK
         } else {
@@ -386,6 +405,7 @@ mod tests {
     use crate::detect::retainer_wall::ToldWall;
     use crate::detect::series::tests::MACHINE;
     use crate::event::Moment;
+    use touchdown_rotor::real::sqrt;
 
     const SAMPLE_RATE: f32 = 20_000.0;
     const TOLD: ToldWall = ToldWall {
@@ -496,7 +516,7 @@ mod tests {
             let found = test.take(
                 &mut state,
                 &mut wall,
-                (pull, is_whole),
+                (&pull, is_whole),
                 Some(&now),
                 &signals,
             );

@@ -4,7 +4,6 @@ mod learnt;
 
 pub(crate) use self::learnt::Afloat;
 use crate::config::DetectorConfig;
-use crate::detect::contact::Touching;
 use crate::detect::ends::{Ends, EndsTest};
 use crate::detect::estimate::{Estimate, Exposure};
 use crate::detect::event_writer::EventWriter;
@@ -15,7 +14,7 @@ use crate::detect::measurement::Measurement;
 use crate::detect::noise::Noise;
 use crate::detect::orbit::{OrbitState, Orbiting};
 use crate::detect::pending::Pending;
-use crate::detect::phase_machine::{Disturbance, PhaseMachine, PhaseState};
+use crate::detect::phase_machine::{Disturbance, Lifting, PhaseMachine, PhaseState};
 use crate::detect::possible::{Possible, PossibleTest};
 use crate::detect::release::{Release, ReleaseBank, Released};
 use crate::detect::signals::Signals;
@@ -206,10 +205,15 @@ impl Detector {
     }
 
     /// What the rotor goes through; of ends that are apart the one that is worse off.
-    pub(crate) fn strain(&self, state: &DetectorState) -> Exposure {
-        let of = |phase_state: &PhaseState| self.phase_machine.strain(phase_state);
+    #[inline]
+    pub(crate) fn strain<'a>(&self, state: &'a DetectorState) -> Exposure<'a> {
+        let of = |phase_state: &'a PhaseState| self.phase_machine.strain(phase_state);
         match state.ends.alone() {
-            [a, b] => of(a).worse(&of(b)),
+            [a, b] => {
+                let mut both = of(a);
+                both.add(&of(b));
+                both
+            }
             _ => of(&state.rotor),
         }
     }
@@ -465,18 +469,15 @@ impl Detector {
         signals: &Signals,
         writer: &mut EventWriter,
     ) {
-        let disturbance = state.disturbance();
-        let ends = &mut state.ends;
-        let whose = |contact: &Touching| ends.lifting(contact);
-        if !self.phase_machine.touching(
-            &mut state.rotor,
-            measurement,
-            signals,
-            (&disturbance, true),
-            whose,
-            writer,
-        ) {
-            state.ends.lifts = true;
+        let disturbance = &state.disturbance();
+        let (machine, rotor) = (&self.phase_machine, &mut state.rotor);
+        let findings = machine.feel(rotor, measurement, signals, (disturbance, true));
+        let lifting = state.ends.lifting(&rotor.contact);
+        if matches!(findings, [Some((EventKind::LiftOff, _)), _]) && lifting != Lifting::Both {
+            // Nothing is told of one end before it has a ladder of its own.
+            state.ends.lifts |= lifting == Lifting::One;
+        } else if findings != [None, None] {
+            machine.go_on(rotor, findings, measurement, disturbance, writer);
         }
     }
 

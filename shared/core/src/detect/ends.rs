@@ -12,6 +12,7 @@ use crate::detect::pending::Pending;
 use crate::detect::phase_machine::{Disturbance, Lifting, PhaseMachine, PhaseState};
 use crate::detect::signals::Signals;
 use crate::event::{Motion, Plane};
+use crate::memory::Memory;
 use crate::phase::Phase;
 use crate::sensing::PLANES;
 use crate::vector::square;
@@ -34,8 +35,8 @@ pub(crate) struct EndsTest {
     phase_machine: PhaseMachine,
     /// Square of the e that sensors may show of ends that are together, m^2.
     tolerance: f32,
-    /// Samples over which the mean runs, and part of the way that the power goes in one.
-    mean_samples: u32,
+    /// Over which the mean runs, and part of the way that the power goes in one sample.
+    mean: Memory,
     power_gain: f32,
 }
 
@@ -81,12 +82,11 @@ impl EndsTest {
             },
             ..*config
         };
-        let mean_samples = (tuning.still_time * rate).max(16.0) as u32;
         Self {
             learning: Learning::new(tuning, rate),
             phase_machine: PhaseMachine::new(&alone, threshold),
             tolerance: tolerance * tolerance,
-            mean_samples,
+            mean: Memory::of((tuning.still_time * rate).max(16.0) as u32),
             power_gain: 1.0 / (tuning.catch_time * rate).max(1.0),
         }
     }
@@ -105,8 +105,8 @@ impl EndsTest {
         ends.now = now;
         ends.variance = variance;
         let learnt = &mut ends.learnt;
-        learnt.count = (learnt.count + 1).min(self.mean_samples);
-        let gain = 1.0 / learnt.count as f32;
+        learnt.count = (learnt.count + 1).min(self.mean.samples);
+        let gain = self.mean.gain(learnt.count);
         for ((now, mean), power) in now.iter().zip(&mut learnt.mean).zip(&mut learnt.power) {
             for (now, mean) in now.iter().zip(mean.iter_mut()) {
                 *mean += gain * (now - *mean);
@@ -157,29 +157,26 @@ impl EndsTest {
         writer: &mut EventWriter,
     ) {
         let (levitation, disturbance) = floating;
-        let (homes, _) = ends.homes(levitation);
+        let Ends { learnt, alone, .. } = ends;
         let whole = writer.plane;
-        let alone = ends.alone.iter_mut();
-        for (((phase_state, measurement), centre), plane) in
-            alone.zip(fixes).zip(homes).zip([Plane::A, Plane::B])
-        {
+        let planes = [(Plane::A, 1.0), (Plane::B, -1.0)];
+        for ((phase_state, measurement), (plane, side)) in alone.iter_mut().zip(fixes).zip(planes) {
             writer.plane = plane;
             match (phase_state.phase, measurement) {
                 (Phase::Sliding | Phase::Rolling, measurement) => {
-                    self.phase_machine.touching(
-                        phase_state,
-                        measurement.as_ref(),
-                        signals,
-                        (disturbance, false),
-                        |_| Lifting::Both,
-                        writer,
-                    );
+                    let (machine, measurement) = (&self.phase_machine, measurement.as_ref());
+                    let of_end = (disturbance, false);
+                    let findings = machine.feel(phase_state, measurement, signals, of_end);
+                    if findings != [None, None] {
+                        machine.go_on(phase_state, findings, measurement, disturbance, writer);
+                    }
                 }
                 (Phase::FreeFall | Phase::Impact, Some(measurement)) => {
+                    let home = learnt.home(levitation, side);
                     self.phase_machine.land(
                         phase_state,
                         measurement,
-                        centre,
+                        home,
                         signals,
                         pending,
                         writer,
@@ -216,7 +213,7 @@ impl EndsTest {
         let joined = match fixes {
             [Some(_), None] => a,
             [None, Some(_)] => b,
-            _ if a.phase == b.phase && ends.learnt.together >= self.mean_samples => a,
+            _ if a.phase == b.phase && ends.learnt.together >= self.mean.samples => a,
             _ if a.phase == Phase::Levitated && b.phase == Phase::Levitated => a,
             _ => return None,
         };
@@ -227,12 +224,20 @@ impl EndsTest {
     }
 }
 
+impl LearntEnds {
+    /// Where the end on that `side`, 1 or -1, floats, m.
+    fn home(&self, levitation: &Levitation, side: f32) -> [f32; 2] {
+        let ([x, y], [u, v]) = (levitation.mean, self.levitation.mean);
+        [x + side * u, y + side * v]
+    }
+}
+
 impl Ends {
     /// Where each end floats, m, and its variance on one axis, m^2.
     pub(crate) fn homes(&self, levitation: &Levitation) -> ([[f32; 2]; PLANES], f32) {
-        let ([x, y], [u, v]) = (levitation.mean, self.learnt.levitation.mean);
         let variance = levitation.variance + self.learnt.levitation.variance;
-        ([[x + u, y + v], [x - u, y - v]], variance)
+        let homes = [1.0, -1.0].map(|side| self.learnt.home(levitation, side));
+        (homes, variance)
     }
 
     /// Whether what is learnt of both the rotor and its tilt excludes that an end floats at

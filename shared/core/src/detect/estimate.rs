@@ -1,5 +1,6 @@
 //! What is known of the rotor after a tick, for those above the detector: forecast and severity.
 
+use crate::detect::series::Series;
 use crate::event::Moment;
 
 /// Where a forecast starts: the rotor as the detector has it; SI.
@@ -43,37 +44,33 @@ pub enum Place {
 }
 
 /// What the present tick does to the machine, for its severity: the rotor after it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Exposure {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exposure<'a> {
     /// In flight or in contact.
     pub(crate) is_released: bool,
-    /// Speed of the centre and the error of each component, m/s.
+    /// Speed of the centre, m/s, and the variance of each component, (m/s)^2.
     pub(crate) speed: f32,
-    pub(crate) speed_error: f32,
+    pub(crate) speed_variance: f32,
     /// Samples since permanent contact began, while in it.
     pub(crate) contact_age: Option<u32>,
     /// Rate of a declared whirl, rad/s.
     pub(crate) whirl: Option<f32>,
-    /// As seen in the impacts.
-    pub(crate) restitution: f32,
-    /// Sum of the speeds into the wall that the series has yet to come, m/s.
-    pub(crate) ahead: f32,
+    /// Its impacts.
+    pub(crate) series: &'a Series,
 }
 
-impl Exposure {
-    /// The greater of each, of two ends.
-    pub(crate) fn worse(&self, other: &Self) -> Self {
-        let faster = if self.speed >= other.speed {
-            self
-        } else {
-            other
-        };
-        let whirls = [self.whirl, other.whirl].into_iter().flatten();
-        Self {
-            is_released: self.is_released || other.is_released,
-            contact_age: self.contact_age.max(other.contact_age),
-            whirl: whirls.reduce(|a, b| if a.abs() >= b.abs() { a } else { b }),
-            ..*faster
+impl Exposure<'_> {
+    /// Takes the greater of each, of two ends.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.is_released |= other.is_released;
+        if other.speed > self.speed {
+            (self.speed, self.speed_variance) = (other.speed, other.speed_variance);
+            self.series = other.series;
+        }
+        self.contact_age = self.contact_age.max(other.contact_age);
+        let [own, others] = [self.whirl, other.whirl].map(|it| it.unwrap_or(0.0).abs());
+        if others > own {
+            self.whirl = other.whirl;
         }
     }
 }

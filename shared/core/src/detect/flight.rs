@@ -12,7 +12,7 @@ use crate::detect::retainer_wall::{RetainerWall, ToldWall};
 use crate::detect::series::Series;
 use crate::detect::track::{Ballistic, Pull, Track};
 use crate::event::Moment;
-use crate::vector::{direction, length};
+use crate::vector::{direction, length, less};
 use core::f32::consts::TAU;
 use touchdown_rotor::real::sqrt;
 
@@ -57,6 +57,8 @@ pub(crate) struct FlightTest {
     ballistic: Ballistic,
     jumps: JumpTest,
     machine: MachineConfig,
+    /// What acts before any flight has shown it.
+    told_pull: Pull,
     told: ToldWall,
     period: f32,
     threshold: f32,
@@ -161,8 +163,20 @@ impl NoiseFloor {
     /// Factor on the threshold of the impact test. White noise makes the level waver, so only what is
     /// clearly louder counts.
     pub(crate) fn threshold_scale(&self) -> f32 {
-        let ratio = self.level / WHITE_LEVEL;
+        let ratio = self.level * (1.0 / WHITE_LEVEL);
         if ratio > LOUD { ratio } else { 1.0 }
+    }
+}
+
+/// Gravity, and magnets without control.
+fn told_pull(machine: &MachineConfig) -> Pull {
+    let stiffness = PULL_AT_WALL / machine.clearance;
+    Pull {
+        acceleration: [0.0, -machine.gravity],
+        error: PULL_ERROR,
+        stiffness: 0.0,
+        stiffness_variance: stiffness * stiffness,
+        is_shown: true,
     }
 }
 
@@ -186,6 +200,7 @@ impl FlightTest {
             ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
             jumps: JumpTest::new(tuning, config.sample_rate, threshold),
             machine,
+            told_pull: told_pull(&machine),
             told: ToldWall {
                 radius: machine.clearance,
                 tolerance,
@@ -241,15 +256,17 @@ impl FlightTest {
     }
 
     /// What acts in a flight, as far as it is known before it.
-    pub(crate) fn pull(&self, flight: &Airborne) -> Pull {
-        let stiffness = PULL_AT_WALL / self.machine.clearance;
-        flight.pull.unwrap_or(Pull {
-            acceleration: [0.0, -self.machine.gravity],
-            error: PULL_ERROR,
-            stiffness: 0.0,
-            stiffness_variance: stiffness * stiffness,
-            is_shown: true,
-        })
+    fn pull(&self, flight: &Airborne) -> Pull {
+        flight.pull.unwrap_or(self.told_pull)
+    }
+
+    /// The wall, and what acts.
+    pub(crate) fn seen_in_contact<'a>(
+        &'a self,
+        flight: &'a mut Airborne,
+    ) -> (&'a mut RetainerWall, &'a Pull) {
+        let pull = flight.pull.as_ref().unwrap_or(&self.told_pull);
+        (&mut flight.wall, pull)
     }
 
     /// The same in a flight that begins. Where the sensors are loud while the rotor floats, it does not show the stiffness.
@@ -366,6 +383,29 @@ impl FlightTest {
         let (track, seen) = (&mut flight.track, measurement.position);
         let innovation = (self.ballistic).correct(track, seen, measurement.variance);
         let (outward, _) = self.outward(flight, flight.track.seen());
+        let inward = outward.map(|n| -n);
+        self.jumps.update(&mut flight.bank, &innovation, inward);
+        if self.jumps.is_found(&flight.bank)
+            && let Some(hit) = self.jumped(flight, measurement, open, outward)
+        {
+            return Some(self.take_in(flight, &hit));
+        }
+        self.relaunch(flight, measurement);
+        self.follow_touch(flight, measurement);
+        let age = self.contact(flight, measurement)?;
+        // Where the wall gives way a series ends at once, with a touch that stays.
+        let met = flight.met.filter(|_| flight.gives);
+        Some(lies(met.map_or(age, |met| measurement.now.since(met))))
+    }
+
+    /// A jump seems to be found: the impact, if it was one.
+    fn jumped(
+        &self,
+        flight: &mut Airborne,
+        measurement: &Measurement,
+        open: Option<(Moment, [f32; 2])>,
+        outward: [f32; 2],
+    ) -> Option<Hit> {
         let is_clear = self.told.excludes(flight.track.seen());
         let approach = Approach {
             inward: outward.map(|n| -n),
@@ -374,23 +414,15 @@ impl FlightTest {
             restitution: flight.series.restitution(&self.machine),
             is_sudden: !flight.gives && !is_clear,
         };
-        if let Some(jump) = self.jumps.take(&mut flight.bank, &innovation, &approach) {
-            let by_wall = !is_clear && is_of_a_wall(&jump, outward);
-            let impact = by_wall.then(|| self.judge(flight, &jump, measurement, open));
-            flight.track.shift(&jump, jump.age * self.period);
-            flight.bank.restart();
-            match impact {
-                Some(Some(hit)) => return Some(self.take_in(flight, &hit)),
-                Some(None) => {}
-                None => flight.bank.listen(),
-            }
+        let jump = self.jumps.look(&flight.bank, &approach)?;
+        let by_wall = !is_clear && is_of_a_wall(&jump, outward);
+        let impact = by_wall.then(|| self.judge(flight, &jump, measurement, open));
+        flight.track.shift(&jump, jump.age * self.period);
+        flight.bank.restart();
+        if impact.is_none() {
+            flight.bank.listen();
         }
-        self.relaunch(flight, measurement);
-        self.follow_touch(flight, measurement);
-        let age = self.contact(flight, measurement)?;
-        // Where the wall gives way a series ends at once, with a touch that stays.
-        let met = flight.met.filter(|_| flight.gives);
-        Some(lies(met.map_or(age, |met| measurement.now.since(met))))
+        impact.flatten()
     }
 
     /// Whether the wall where the last impact was has been left, or gives way.
@@ -493,12 +525,16 @@ impl FlightTest {
     /// Whether the rotor can be there, from where it was foreseen: noise, or an impact since the last sample or
     /// the one before, which takes it inward and along the wall by no more than its speed.
     fn is_possible(&self, track: &Track, measurement: &Measurement) -> bool {
-        let noise = self.certain * track.spread(measurement.variance);
+        let foreseen = track.seen();
+        let [dx, dy] = less(measurement.position, foreseen);
+        let noise_square = self.certain * self.certain * track.seen_variance(measurement.variance);
+        if dx * dx + dy * dy < noise_square {
+            return true;
+        }
+        let noise = sqrt(noise_square);
         let speed = length(track.velocity) + FASTER * track.speed_error();
         let kick = KICK * self.period * speed;
-        let [x, y] = track.seen();
-        let ([nx, ny], _) = direction([x, y]);
-        let [dx, dy] = [measurement.position[0] - x, measurement.position[1] - y];
+        let ([nx, ny], _) = direction(foreseen);
         let (out, along) = (dx * nx + dy * ny, dy * nx - dx * ny);
         out < noise && out > -noise - kick && along.abs() < noise + kick
     }
@@ -529,17 +565,21 @@ impl FlightTest {
 
     /// Samples since it has come to lie on the wall.
     fn contact(&self, flight: &mut Airborne, measurement: &Measurement) -> Option<f32> {
-        let (outward, seen) = direction(measurement.position);
-        let near = self.near(flight, outward);
+        let near = flight.wall.near_at(measurement.position, &self.told);
         if let Some(lifted) = &mut flight.lifted {
-            lifted.take(-flight.wall.beyond((outward, seen)), measurement.now);
+            let here = direction(measurement.position);
+            lifted.take(-flight.wall.beyond(here), measurement.now);
         }
-        flight.seen_near = if seen < near { 0 } else { flight.seen_near + 1 };
+        flight.seen_near = if is_within(measurement.position, near) {
+            0
+        } else {
+            flight.seen_near + 1
+        };
         if flight.seen_near > OVERDUE * self.dwell {
             return Some(flight.seen_near as f32);
         }
-        let (_, radius) = direction(flight.track.seen());
-        if radius < near {
+        let place = flight.track.seen();
+        if is_within(place, near) {
             flight.near_wall = 0;
             flight.lying = 0;
             return None;
@@ -556,13 +596,18 @@ impl FlightTest {
                 return Some(over / self.period);
             }
         }
-        if radius < flight.lies {
+        if is_within(place, flight.lies) {
             flight.lying = 0;
             return None;
         }
         flight.lying += 1;
         (flight.lying > self.dwell).then_some(flight.lying as f32)
     }
+}
+
+/// Whether a place is nearer to the told centre than `radius`, both m.
+fn is_within([x, y]: [f32; 2], radius: f32) -> bool {
+    radius > 0.0 && x * x + y * y < radius * radius
 }
 
 /// Part of `vector` along a unit vector.

@@ -132,17 +132,13 @@ impl JumpTest {
         }
     }
 
-    /// Takes the innovation of a sample, where an impact is looked for.
-    pub(crate) fn take(
-        &self,
-        bank: &mut JumpBank,
-        innovation: &Innovation,
-        approach: &Approach,
-    ) -> Option<Jump> {
-        self.update(bank, innovation, approach.inward);
-        if bank.statistic <= self.threshold * bank.threshold_scale {
-            return None;
-        }
+    /// Whether the last sample shows a jump.
+    pub(crate) fn is_found(&self, bank: &JumpBank) -> bool {
+        bank.statistic > self.threshold * bank.threshold_scale
+    }
+
+    /// The jump that is found, unless that of an impact needs another sample.
+    pub(crate) fn look(&self, bank: &JumpBank, approach: &Approach) -> Option<Jump> {
         let index = self.likeliest(bank, approach)?;
         let found = bank.candidates().get(index)?;
         let scale = 1.0 / found.information;
@@ -255,6 +251,21 @@ impl JumpTest {
         best.1
     }
 
+    /// Logarithm of how likely an instant of the bank is, where it is next to that of so many samples ago.
+    #[inline(never)]
+    fn likelihood(
+        &self,
+        bank: &JumpBank,
+        index: usize,
+        age: f32,
+        approach: &Approach,
+    ) -> Option<f32> {
+        let candidate = bank.candidates().get(index)?;
+        let own = self.age(bank, index);
+        let guess = candidate.guess(own, approach, self.period);
+        ((own - age).abs() <= f32::from(self.stride)).then(|| guess.likelihood(DATE_SPREAD))
+    }
+
     /// Samples since the likeliest instant around one of the bank, where restitution is nearly right: the peak of a parabola
     /// through it and its neighbours.
     fn date(&self, bank: &JumpBank, mut index: usize, approach: &Approach) -> f32 {
@@ -262,15 +273,9 @@ impl JumpTest {
         let mut steps = 0;
         loop {
             let age = self.age(bank, index);
-            let likelihood = |at: usize| {
-                let near = bank.candidates().get(at)?;
-                let of_near = self.age(bank, at);
-                let guess = near.guess(of_near, approach, self.period);
-                ((of_near - age).abs() <= stride).then(|| guess.likelihood(DATE_SPREAD))
-            };
             let older = if index == 0 { last } else { index - 1 };
             let younger = if index == last { 0 } else { index + 1 };
-            let around = [older, index, younger].map(likelihood);
+            let around = [older, index, younger].map(|it| self.likelihood(bank, it, age, approach));
             let [before, here, after] = around;
             if steps < AROUND && (before > here || after > here) {
                 index = if before > here { older } else { younger };

@@ -1,13 +1,14 @@
 //! The end of a permanent contact: a CUSUM on the distance from the wall.
 
 use crate::event::Moment;
+use crate::memory::Memory;
 use crate::vector::square;
 use touchdown_rotor::real::{root, sqrt};
 
 /// Samples that the wall's place is learnt from before it is trusted.
 const WARM_UP: u16 = 16;
 /// Samples that the wall's learnt place remembers.
-pub(crate) const MEMORY: f32 = 256.0;
+pub(crate) const MEMORY: Memory = Memory::of(256);
 /// Samples that show how far the sensors waver on the wall: a turn of the rotor, or so much of it as the wall's
 /// learnt place does not follow.
 const LEARNT: u16 = 128;
@@ -97,7 +98,7 @@ impl LiftOff {
 
     /// Whether the wall has been learnt for as long as is remembered.
     pub(crate) fn is_settled(&self) -> bool {
-        f32::from(self.count) >= MEMORY
+        u32::from(self.count) >= MEMORY.samples
     }
 
     /// At one end alone, where the wall is `farther` (m). Which end has left it, the next samples decide.
@@ -139,7 +140,7 @@ impl LiftOff {
             self.left = place;
             self.left_gap = self.gap;
             self.count = self.count.saturating_add(1);
-            let gain = 1.0 / f32::from(self.count).min(MEMORY);
+            let gain = MEMORY.gain(self.count.into());
             self.lately += gain * (radius - self.lately);
             if self.count > 1 {
                 self.square += gain * (gap * gap - self.square);

@@ -3,8 +3,10 @@
 //! A third difference takes off position, velocity and acceleration; of white noise it leaves
 //! 1 + 9 + 9 + 1 = 20 times the variance.
 
+use crate::memory::Memory;
+
 /// Samples that the estimate remembers.
-const MEMORY: u32 = 4096;
+const MEMORY: Memory = Memory::of(4096);
 /// Samples before the estimate is used.
 pub(crate) const WARM_UP: u32 = 32;
 /// Squared third differences count at most this many variances: an impact is no noise.
@@ -35,12 +37,12 @@ impl Noise {
         }
         let dx = x - 3.0 * a[0] + 3.0 * b[0] - c[0];
         let dy = y - 3.0 * a[1] + 3.0 * b[1] - c[1];
-        let mut square = (dx * dx + dy * dy) * f32::from(planes) / 40.0;
+        let mut square = (dx * dx + dy * dy) * (f32::from(planes) * (1.0 / 40.0));
         if self.count >= WARM_UP && square > CLIP * self.variance {
             square = CLIP * self.variance;
         }
-        self.count = (self.count + 1).min(MEMORY);
-        self.variance += (square - self.variance) / self.count as f32;
+        self.count = (self.count + 1).min(MEMORY.samples);
+        self.variance += MEMORY.gain(self.count) * (square - self.variance);
     }
 
     /// A gap in the samples.
@@ -56,8 +58,9 @@ impl Noise {
     /// Variance of one axis of the mean over `planes` planes, m^2; never below that of rounding to
     /// `resolution`.
     pub(crate) fn variance(&self, planes: u8, resolution: f32) -> f32 {
-        let least = resolution * resolution / 12.0;
-        self.variance.max(least) / f32::from(planes.max(1))
+        let least = resolution * resolution * (1.0 / 12.0);
+        let of_one = self.variance.max(least);
+        if planes < 2 { of_one } else { 0.5 * of_one }
     }
 }
 

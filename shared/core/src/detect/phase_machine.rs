@@ -3,7 +3,7 @@
 //! The rotor as a whole has one; so has each end while the two move apart.
 
 use crate::config::{DetectorConfig, MachineConfig};
-use crate::detect::contact::{ContactTest, Touching};
+use crate::detect::contact::{ContactTest, Findings, Touching};
 use crate::detect::estimate::{Estimate, Exposure, Place};
 use crate::detect::event_writer::EventWriter;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
@@ -196,25 +196,29 @@ impl PhaseMachine {
     }
 
     /// What the rotor goes through, for its severity.
-    pub(crate) fn strain(&self, phase_state: &PhaseState) -> Exposure {
-        let (track, contact) = (&phase_state.flight.track, &phase_state.contact);
-        let clearance = self.machine.clearance;
-        let mut strain = Exposure {
-            is_released: phase_state.phase >= Phase::FreeFall,
-            speed: length(track.velocity),
-            speed_error: track.speed_error(),
-            restitution: phase_state.flight.series.restitution(&self.machine),
-            ahead: phase_state.flight.series.yet_to_come(&self.machine),
-            ..Exposure::default()
-        };
-        if phase_state.phase.is_contact() {
-            let rate = contact.swing().rate;
-            strain.speed = clearance * rate.abs();
-            strain.speed_error = clearance * contact.track.rate_spread();
-            strain.contact_age = Some(contact.age);
-            strain.whirl = contact.whirls().then_some(rate);
+    #[inline]
+    pub(crate) fn strain<'a>(&self, phase_state: &'a PhaseState) -> Exposure<'a> {
+        let (flight, contact) = (&phase_state.flight, &phase_state.contact);
+        let (is_released, series) = (phase_state.phase >= Phase::FreeFall, &flight.series);
+        if !phase_state.phase.is_contact() {
+            return Exposure {
+                is_released,
+                speed: length(flight.track.velocity),
+                speed_variance: flight.track.speed_variance(),
+                contact_age: None,
+                whirl: None,
+                series,
+            };
         }
-        strain
+        let (clearance, rate) = (self.machine.clearance, contact.swing().rate);
+        Exposure {
+            is_released,
+            speed: clearance * rate.abs(),
+            speed_variance: clearance * clearance * contact.track.rate_variance(),
+            contact_age: Some(contact.age),
+            whirl: contact.whirls().then_some(rate),
+            series,
+        }
     }
 
     /// Whether a rotor at `position`, m, may be at the wall.
@@ -347,36 +351,32 @@ impl PhaseMachine {
         phase_state.phase = Phase::Sliding;
     }
 
-    /// In contact, of the rotor as a whole or of one end; `whose` says whose lift-off it would be. False where it is that of
-    /// one end: nothing is told then.
-    pub(crate) fn touching(
+    /// In contact, of the rotor as a whole or of one end: what the sample shows.
+    pub(crate) fn feel(
         &self,
         phase_state: &mut PhaseState,
         measurement: Option<&Measurement>,
         signals: &Signals,
         (disturbance, is_whole): (&Disturbance, bool),
-        whose: impl FnOnce(&Touching) -> Lifting,
-        writer: &mut EventWriter,
-    ) -> bool {
-        let pull = (self.flight.pull(&phase_state.flight), is_whole);
-        let wavering = phase_state.contact.lift.wavering();
-        let most = wavering.map_or(f32::INFINITY, |it| WAVERING * it);
-        let measurement = measurement.map(|it| Measurement {
-            variance: it.variance.max(disturbance.variance.min(most)),
-            ..*it
-        });
+    ) -> Findings {
+        let contact = &mut phase_state.contact;
+        let (wall, pull) = self.flight.seen_in_contact(&mut phase_state.flight);
+        let measurement = measurement.map(|it| disturbance.on_wall(it, contact));
         let measurement = measurement.as_ref();
-        let findings = self.contact.take(
-            &mut phase_state.contact,
-            &mut phase_state.flight.wall,
-            pull,
-            measurement,
-            signals,
-        );
-        let lifting = whose(&phase_state.contact);
-        if matches!(findings, [Some((EventKind::LiftOff, _)), _]) && lifting != Lifting::Both {
-            return lifting == Lifting::Unclear;
-        }
+        self.contact
+            .take(contact, wall, (pull, is_whole), measurement, signals)
+    }
+
+    /// Tells what a sample in contact has shown, and goes on from there.
+    #[inline(never)]
+    pub(crate) fn go_on(
+        &self,
+        phase_state: &mut PhaseState,
+        findings: Findings,
+        measurement: Option<&Measurement>,
+        disturbance: &Disturbance,
+        writer: &mut EventWriter,
+    ) {
         for (kind, age) in findings.into_iter().flatten() {
             match kind {
                 EventKind::Sliding => phase_state.phase = Phase::Sliding,
@@ -386,8 +386,9 @@ impl PhaseMachine {
                     let wall = wall.filter(|&it| it >= self.contact.nearest);
                     self.flight.end_contact(&mut phase_state.flight, wall);
                     if let Some(measurement) = measurement {
+                        let measurement = disturbance.on_wall(measurement, &phase_state.contact);
                         let threshold_scale = disturbance.threshold_scale;
-                        self.fly(phase_state, measurement, wall, threshold_scale);
+                        self.fly(phase_state, &measurement, wall, threshold_scale);
                         let pressing = self
                             .contact
                             .normal_acceleration(phase_state.contact.swing());
@@ -399,7 +400,18 @@ impl PhaseMachine {
             }
             writer.declare(kind, age, 0.0);
         }
-        true
+    }
+}
+
+impl Disturbance {
+    /// A measurement on the wall, where the sensors waver.
+    fn on_wall(&self, measurement: &Measurement, contact: &Touching) -> Measurement {
+        let wavering = contact.lift.wavering();
+        let most = wavering.map_or(f32::INFINITY, |it| WAVERING * it);
+        Measurement {
+            variance: measurement.variance.max(self.variance.min(most)),
+            ..*measurement
+        }
     }
 }
 

@@ -49,14 +49,15 @@ impl PossibleTest {
         variance: f32,
         floats: bool,
     ) -> bool {
-        let farthest = NOISE * sqrt(variance) + self.farthest * (1.0 + state.left_out as f32);
-        let mut planes = now.iter().zip(&state.last);
-        let is_possible = !floats
-            || planes.all(|pair| match pair {
+        let is_possible = || {
+            let farthest = NOISE * sqrt(variance) + self.farthest * (1.0 + state.left_out as f32);
+            let mut planes = now.iter().zip(&state.last);
+            planes.all(|pair| match pair {
                 (Some(now), Some(last)) => square(*now, *last) <= farthest * farthest,
                 _ => true,
-            });
-        if !is_possible && state.left_out < self.left_out {
+            })
+        };
+        if floats && !is_possible() && state.left_out < self.left_out {
             state.left_out += 1;
             return false;
         }

@@ -113,6 +113,14 @@ impl RetainerWall {
         }
     }
 
+    /// The same of a rotor at a place, m.
+    pub(crate) fn near_at(&self, place: [f32; 2], told: &ToldWall) -> f32 {
+        match self.seen {
+            Seen::Elsewhere => self.near(direction(place).0, told),
+            _ => told.near(),
+        }
+    }
+
     /// The same from which on it may be there: a wall that impacts have shown as told is no nearer.
     pub(crate) fn nearest(&self, n: [f32; 2], told: &ToldWall) -> f32 {
         match self.seen {
@@ -131,8 +139,9 @@ impl RetainerWall {
     }
 
     /// From the told centre to the wall in the direction `n`, m.
-    pub(crate) fn distance(&self, n: [f32; 2]) -> f32 {
-        dot(&self.shape, &waves(n))
+    pub(crate) fn distance(&self, [x, y]: [f32; 2]) -> f32 {
+        let [radius, a, b] = self.shape;
+        radius + a * x + b * y
     }
 
     /// How far outside of the wall's shape a place is, in the direction `n` at `radius` (m), m.
@@ -172,22 +181,16 @@ impl RetainerWall {
         }
     }
 
-    /// U^T times the waves in the direction `n`.
-    fn factors(&self, n: [f32; 2]) -> [f32; STATES] {
-        let waves = waves(n);
-        let mut factors = waves;
-        let columns = factors.iter_mut().skip(1).zip(&self.columns);
-        for (number, (factor, column)) in columns.enumerate() {
-            let above = column.iter().zip(&waves).take(number + 1);
-            *factor += above.map(|(u, wave)| u * wave).sum::<f32>();
-        }
-        factors
+    /// U^T times the waves in a direction: 1, cos f, sin f.
+    fn factors(&self, [x, y]: [f32; 2]) -> [f32; STATES] {
+        let [[of_x, _], [of_y, x_of_y]] = self.columns;
+        [1.0, x + of_x, y + of_y + x_of_y * x]
     }
 
     /// Variance of the wall where these are the factors, m^2.
     fn variance(&self, factors: &[f32; STATES]) -> f32 {
-        let parts = self.diagonal.iter().zip(factors);
-        parts.map(|(d, factor)| d * factor * factor).sum()
+        let ([d, e, f], [_, v, w]) = (self.diagonal, factors);
+        d + e * v * v + f * w * w
     }
 
     /// Takes a place where an impact was, known to `variance` (m^2).
@@ -245,15 +248,6 @@ impl RetainerWall {
         *u += x;
         *v += y;
     }
-}
-
-/// The waves in the direction `n`: 1, cos f, sin f.
-fn waves([x, y]: [f32; 2]) -> [f32; STATES] {
-    [1.0, x, y]
-}
-
-fn dot(a: &[f32; STATES], b: &[f32; STATES]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -222,8 +222,7 @@ impl Series {
 
     /// Slip, m/s, that friction cannot have used up in the impacts so far, from a nominal one.
     pub(crate) fn slip_left(&self, nominal: f32, machine: &MachineConfig) -> f32 {
-        let per_impulse = machine.friction * (1.0 + 1.0 / machine.inertia_ratio);
-        nominal.abs() - per_impulse * self.impulse
+        nominal.abs() - machine.slip_per_impulse() * self.impulse
     }
 }
 

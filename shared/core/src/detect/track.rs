@@ -338,15 +338,20 @@ impl Track {
         [self.position[0] - u * time, self.position[1] - v * time]
     }
 
-    /// Standard deviation of a position (m) of this variance (m^2) from the foreseen one, on each axis.
-    pub(crate) fn spread(&self, variance: f32) -> f32 {
+    /// Variance of a position of this variance about the foreseen one, on each axis, m^2.
+    pub(crate) fn seen_variance(&self, variance: f32) -> f32 {
         let [pp, _, _, oo] = self.variances;
-        sqrt(pp + 2.0 * self.with_offset[0][0] + oo + variance)
+        pp + 2.0 * self.with_offset[0][0] + oo + variance
     }
 
-    /// Standard deviation of the velocity on each axis, m/s.
+    /// Variance of the velocity on each axis, (m/s)^2.
+    pub(crate) fn speed_variance(&self) -> f32 {
+        self.variances[1].max(0.0)
+    }
+
+    /// Its standard deviation, m/s.
     pub(crate) fn speed_error(&self) -> f32 {
-        sqrt(self.variances[1].max(0.0))
+        sqrt(self.speed_variance())
     }
 
     /// Standard deviation of the acceleration on each axis, m/s^2.

@@ -13,6 +13,10 @@ const CORRELATION_TIME: f32 = 1e-3;
 /// Most that one sample can say for a hypothesis: a lost track or a spike decides nothing alone.
 const MAX_LLR_PER_SAMPLE: f32 = 3.0;
 
+/// Of the series of sine and cosine, from the second term on.
+const SIN: [f32; 3] = [1.0 / 6.0, 1.0 / 120.0, 1.0 / 5_040.0];
+const COS: [f32; 3] = [1.0 / 2.0, 1.0 / 24.0, 1.0 / 720.0];
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallFilter {
@@ -21,8 +25,10 @@ pub(crate) struct WallFilter {
     stiffness: f32,
     friction: f32,
     rolling: f32,
-    clearance: f32,
+    per_clearance: f32,
     process_noise: f32,
+    /// A radian in a sample, rad/s: a greater rate is not followed.
+    fastest: f32,
 }
 
 /// One hypothesis' estimate.
@@ -36,6 +42,17 @@ pub(crate) struct WallAngle {
     pub(crate) rate: f32,
     /// Angle turned since the contact began, rad.
     pub(crate) turned: f32,
+}
+
+/// What is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hypotheses {
+    /// Which is true is not known otherwise.
+    Both,
+    /// A measured slip tells; the other one is taken from it.
+    Sliding,
+    /// Likewise.
+    Rolling,
 }
 
 /// Both hypotheses.
@@ -63,25 +80,28 @@ pub(crate) struct Cusum {
 
 impl Cusum {
     fn add(&mut self, gain: f32) {
-        self.sum = (self.sum + gain).max(0.0);
-        self.age = if self.sum > 0.0 {
-            self.age.saturating_add(1)
+        let sum = self.sum + gain;
+        *self = if sum > 0.0 {
+            let age = self.age.saturating_add(1);
+            Self { sum, age }
         } else {
-            0
+            Self::default()
         };
     }
 }
 
 impl WallFilter {
     pub(crate) fn new(machine: &MachineConfig, tuning: &Tuning, sample_rate: f32) -> Self {
-        let error = tuning.contact_error / machine.clearance;
+        let per_clearance = 1.0 / machine.clearance;
+        let error = tuning.contact_error * per_clearance;
         Self {
             period: 1.0 / sample_rate,
-            stiffness: machine.gravity / machine.clearance,
+            stiffness: machine.gravity * per_clearance,
             friction: machine.friction,
             rolling: 1.0 / (1.0 + machine.inertia_ratio),
-            clearance: machine.clearance,
+            per_clearance,
             process_noise: error * error * CORRELATION_TIME / sample_rate,
+            fastest: sample_rate,
         }
     }
 
@@ -90,10 +110,10 @@ impl WallFilter {
         let swing = WallAngle {
             sin: outward[0],
             cos: -outward[1],
-            rate: speed / self.clearance,
+            rate: speed * self.per_clearance,
             turned: 0.0,
         };
-        let spread = spread / self.clearance;
+        let spread = spread * self.per_clearance;
         WallTrack {
             slide: swing,
             roll: swing,
@@ -105,7 +125,26 @@ impl WallFilter {
 
     /// To the next sample, and its position (m), whose axes have `variance` (m^2); `slip` has the
     /// sign of the slip. Without a usable sample, `None`.
-    pub(crate) fn take(&self, track: &mut WallTrack, sample: Option<([f32; 2], f32)>, slip: f32) {
+    pub(crate) fn take(
+        &self,
+        track: &mut WallTrack,
+        sample: Option<([f32; 2], f32)>,
+        slip: f32,
+        followed: Hypotheses,
+    ) {
+        self.predict(track, slip, followed);
+        if let Some(sample) = sample {
+            self.correct(track, sample, followed);
+        }
+        match followed {
+            Hypotheses::Both => return,
+            Hypotheses::Sliding => track.roll = track.slide,
+            Hypotheses::Rolling => track.slide = track.roll,
+        }
+        (track.for_rolling, track.for_sliding) = Default::default();
+    }
+
+    fn predict(&self, track: &mut WallTrack, slip: f32, followed: Hypotheses) {
         let dt = self.period;
         let friction = if slip > 0.0 {
             -self.friction
@@ -114,34 +153,59 @@ impl WallFilter {
         };
         let k = self.stiffness;
         let slide = &mut track.slide;
-        let normal_acceleration = slide.rate * slide.rate + k * slide.cos;
-        // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
-        let growth = 1.0 + friction * slide.rate * dt;
-        slide.predict(
-            growth * (friction * normal_acceleration.max(0.0) - k * slide.sin),
-            dt,
-        );
+        if followed != Hypotheses::Rolling {
+            let normal_acceleration = slide.rate * slide.rate + k * slide.cos;
+            // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
+            let growth = 1.0 + friction * slide.rate * dt;
+            let pressing = if normal_acceleration > 0.0 {
+                normal_acceleration
+            } else {
+                0.0
+            };
+            let sliding = growth * (friction * pressing - k * slide.sin);
+            slide.predict(sliding, dt, self.fastest);
+        }
         let roll = &mut track.roll;
-        roll.predict(-k * self.rolling * roll.sin, dt);
+        if followed != Hypotheses::Sliding {
+            roll.predict(-k * self.rolling * roll.sin, dt, self.fastest);
+        }
         let [aa, ar, rr] = track.covariance;
         track.covariance = [
             aa + (2.0 * ar + rr * dt) * dt,
             ar + rr * dt,
             rr + self.process_noise,
         ];
-        let Some((position, variance)) = sample else {
-            return;
-        };
-        let scale = 1.0 / self.clearance;
+    }
+
+    fn correct(
+        &self,
+        track: &mut WallTrack,
+        (position, variance): ([f32; 2], f32),
+        followed: Hypotheses,
+    ) {
+        let scale = self.per_clearance;
+        let place = position.map(|it| it * scale);
         let noise = variance * scale * scale;
         let [aa, ar, rr] = track.covariance;
-        let total = aa + noise;
-        let gain = [aa / total, ar / total];
-        let keep = noise / total;
+        let per_total = 1.0 / (aa + noise);
+        let gain = [aa * per_total, ar * per_total];
+        let keep = noise * per_total;
         track.covariance = [aa * keep, ar * keep, rr - gain[1] * ar];
-        let slide = track.slide.correct(position, scale, gain);
-        let roll = track.roll.correct(position, scale, gain);
-        let for_rolling = 0.5 * (slide * slide - roll * roll) / total;
+        let (slide, roll) = match followed {
+            Hypotheses::Both => (
+                track.slide.correct(place, gain),
+                track.roll.correct(place, gain),
+            ),
+            Hypotheses::Sliding => {
+                track.slide.correct(place, gain);
+                return;
+            }
+            Hypotheses::Rolling => {
+                track.roll.correct(place, gain);
+                return;
+            }
+        };
+        let for_rolling = 0.5 * (slide * slide - roll * roll) * per_total;
         let for_rolling = for_rolling.clamp(-MAX_LLR_PER_SAMPLE, MAX_LLR_PER_SAMPLE);
         track.for_rolling.add(for_rolling);
         track.for_sliding.add(-for_rolling);
@@ -149,25 +213,34 @@ impl WallFilter {
 }
 
 impl WallTrack {
-    /// Standard deviation of the rates, rad/s.
+    /// Variance of the rates, (rad/s)^2.
+    pub(crate) fn rate_variance(&self) -> f32 {
+        self.covariance[2].max(0.0)
+    }
+
+    /// Its standard deviation, rad/s.
     pub(crate) fn rate_spread(&self) -> f32 {
-        sqrt(self.covariance[2].max(0.0))
+        sqrt(self.rate_variance())
     }
 }
 
 impl WallAngle {
-    /// A rate of more than a radian in a sample is not followed.
-    fn predict(&mut self, acceleration: f32, dt: f32) {
-        let angle = (self.rate + 0.5 * acceleration * dt) * dt;
+    fn predict(&mut self, acceleration: f32, dt: f32, fastest: f32) {
+        let change = acceleration * dt;
+        let angle = (self.rate + 0.5 * change) * dt;
+        self.rate += change;
         // Not `clamp`: bounds that it cannot see through may be the wrong way round, and it would say so.
-        self.rate = (self.rate + acceleration * dt).max(-1.0 / dt).min(1.0 / dt);
+        if self.rate.abs() > fastest {
+            self.rate = fastest.copysign(self.rate);
+        }
         self.rotate(angle);
     }
 
-    fn correct(&mut self, [x, y]: [f32; 2], scale: f32, gain: [f32; 2]) -> f32 {
-        let residual = (x * self.cos + y * self.sin) * scale;
+    /// Takes a place, in clearances.
+    fn correct(&mut self, [x, y]: [f32; 2], gain: [f32; 2]) -> f32 {
+        let residual = x * self.cos + y * self.sin;
         // On the far side the tangential component no longer tells the way.
-        let outward = (x * self.sin - y * self.cos) * scale;
+        let outward = x * self.sin - y * self.cos;
         let residual = if outward > 0.0 {
             residual
         } else if residual >= 0.0 {
@@ -184,8 +257,8 @@ impl WallAngle {
     fn rotate(&mut self, angle: f32) {
         let a = angle.clamp(-1.0, 1.0);
         let q = a * a;
-        let sin = a * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0)));
-        let cos = 1.0 - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0));
+        let sin = a * (1.0 - q * (SIN[0] - q * (SIN[1] - q * SIN[2])));
+        let cos = 1.0 - q * (COS[0] - q * (COS[1] - q * COS[2]));
         let (s, c) = (self.sin, self.cos);
         let (s, c) = (s * cos + c * sin, c * cos - s * sin);
         let norm = 1.5 - 0.5 * (s * s + c * c);

@@ -4,6 +4,7 @@
 //! on average, a value that is off is off by the detector's own measure of certainty.
 
 use crate::fault::{Condition, FaultKind, Found};
+use crate::memory::Memory;
 use touchdown_rotor::real::{ln, sqrt};
 
 /// Part of an innovation that the filter keeps after a sample. Chosen: an orbit of 30 um at 500 Hz and
@@ -15,7 +16,7 @@ const ACCELERATION_GAIN: f32 = (1.0 - DAMPING) * (1.0 - DAMPING) * (1.0 - DAMPIN
 /// Variance of its innovation in white noise of variance 1, as the test below measures it.
 const WHITE_INNOVATION: f32 = 1.96;
 /// Samples that the variance of the innovations is learnt over, and before it is used.
-const MEMORY: u16 = 256;
+const MEMORY: Memory = Memory::of(256);
 const WARM_UP: u16 = 64;
 /// A squared innovation counts at most this many variances.
 const CLIP: f32 = 25.0;
@@ -373,14 +374,9 @@ impl Watch {
             square = CLIP * it.variance;
         }
         it.seen += 1;
-        let gain = if it.seen >= MEMORY {
-            1.0 / f32::from(MEMORY)
-        } else {
-            1.0 / f32::from(it.seen)
-        };
-        it.variance += gain * (square - it.variance);
-        if it.seen >= 4 * MEMORY {
-            it.seen = 3 * MEMORY;
+        it.variance += MEMORY.gain(it.seen.into()) * (square - it.variance);
+        if u32::from(it.seen) >= 4 * MEMORY.samples {
+            it.seen = 3 * MEMORY.samples as u16;
             if it.variance < it.quiet {
                 it.quiet = it.variance;
                 it.stale = true;

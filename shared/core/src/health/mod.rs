@@ -337,6 +337,7 @@ impl HealthState {
     }
 
     /// A fault that is there to stay.
+    #[inline(never)]
     fn tell(&mut self, reading: &mut Reading, index: usize, kind: FaultKind, lost: bool) {
         let condition = if lost {
             Condition::Lost

@@ -109,7 +109,7 @@ impl FlightTest {
             place,
             shown: shows.then(|| {
                 let earlier = earlier * bounce.normal_speed;
-                after.spread(0.0) * after.spread(0.0) + earlier * earlier
+                after.seen_variance(0.0) + earlier * earlier
             }),
         })
     }

@@ -112,6 +112,7 @@ impl Follow {
     pub(super) fn advance(&self, orbit: &mut Orbit, spin: Option<f32>) {
         if let (Some(now), Some(before)) = (spin, orbit.spin)
             && before != 0.0
+            && now != before
         {
             orbit.hasten(orbit.rate * (now / before - 1.0));
         }
