@@ -13,8 +13,6 @@ use touchdown_rotor::real::{root, sqrt};
 const IMPOSSIBLE: f32 = 0.3;
 /// Part of the faintest impact's speed that one which is foreseen has to have.
 const FAINTER: f32 = 0.42;
-/// Part of gravity that a wall is taken to press with at least.
-const LEAST_PRESSING: f32 = 0.1;
 /// Part of the way by which way, velocity and acceleration may differ from those of one acceleration.
 const STEADY: f32 = 0.2;
 
@@ -124,12 +122,11 @@ impl FlightTest {
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
     pub(super) fn min_detectable_speed(&self, normal_acceleration: f32, variance: f32) -> f32 {
-        let a = normal_acceleration.max(LEAST_PRESSING * self.machine.gravity);
-        if a <= 0.0 {
+        if normal_acceleration <= 0.0 {
             return 0.0;
         }
-        let fifth = 40.0 * self.threshold * variance * self.period / (a * a);
-        a * root::<5>(fifth)
+        let square = normal_acceleration * normal_acceleration;
+        normal_acceleration * root::<5>(40.0 * self.threshold * variance * self.period / square)
     }
 }
 
