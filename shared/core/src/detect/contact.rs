@@ -43,7 +43,7 @@ pub(crate) struct ContactTest {
     period: f32,
     threshold: f32,
     still_samples: u32,
-    /// Slip that friction takes off, per speed into the wall.
+    /// Slip that friction takes off, m/s, for each m/s into the wall.
     per_impulse: f32,
     per_clearance: f32,
     /// m.
@@ -289,7 +289,7 @@ impl ContactTest {
     fn goes_round(&self, state: &Touching, pull: &Pull, slip: f32) -> bool {
         let swing = state.swing();
         let enough = |rate: f32, pull: f32| self.machine.clearance * rate * rate >= pull;
-        // Whatever the pull and wherever it is now.
+        // Less is not enough, wherever it is and whatever pulls.
         if swing.rate * slip >= 0.0 || !enough(swing.rate, 3.0 * pull.error) {
             return false;
         }

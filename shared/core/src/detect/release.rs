@@ -165,10 +165,10 @@ impl Release {
             bank.left = 1.0;
         }
         bank.wait -= 1;
-        let most = MAX_RESIDUAL_SIGMA * sqrt(variance.max(bank.highest));
+        let most = MAX_RESIDUAL_SIGMA * MAX_RESIDUAL_SIGMA * variance.max(bank.highest);
         let size = x * x + y * y;
-        let (x, y) = if size > most * most {
-            let part = most / sqrt(size);
+        let (x, y) = if size > most {
+            let part = sqrt(most / size);
             (part * x, part * y)
         } else {
             (x, y)

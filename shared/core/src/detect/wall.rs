@@ -2,7 +2,7 @@
 //!
 //! Two filters follow the angle from the bottom, one by the equation of sliding, one by that of
 //! rolling, with the same gains. Whichever predicts the samples better is true: the difference of
-//! their log-likelihoods is summed up as a CUSUM in each direction.
+//! their log-likelihoods is summed up as a CUSUM in each direction. Where the slip is measured, one is enough.
 
 use crate::config::{MachineConfig, Tuning};
 use touchdown_rotor::real::sqrt;
@@ -44,14 +44,14 @@ pub(crate) struct WallAngle {
     pub(crate) turned: f32,
 }
 
-/// What is followed.
+/// Which of the hypotheses are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hypotheses {
-    /// Which is true is not known otherwise.
+    /// Both: the samples have to tell which is true.
     Both,
-    /// A measured slip tells; the other one is taken from it.
+    /// One alone, as a measured slip tells that it slides. The other estimate is made equal to it.
     Sliding,
-    /// Likewise.
+    /// Likewise, as it rolls.
     Rolling,
 }
 

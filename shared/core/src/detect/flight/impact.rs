@@ -122,11 +122,8 @@ impl FlightTest {
 
     /// Speed below which an impact cannot be told from lying on the wall, m/s.
     pub(super) fn min_detectable_speed(&self, normal_acceleration: f32, variance: f32) -> f32 {
-        if normal_acceleration <= 0.0 {
-            return 0.0;
-        }
-        let square = normal_acceleration * normal_acceleration;
-        normal_acceleration * root::<5>(40.0 * self.threshold * variance * self.period / square)
+        let a = normal_acceleration.max(0.0);
+        root::<5>(40.0 * self.threshold * variance * self.period * a * a * a)
     }
 }
 
