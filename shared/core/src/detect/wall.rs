@@ -154,14 +154,9 @@ impl WallFilter {
         let k = self.stiffness;
         let slide = &mut track.slide;
         if followed != Hypotheses::Rolling {
-            let normal_acceleration = slide.rate * slide.rate + k * slide.cos;
+            let pressing = (slide.rate * slide.rate + k * slide.cos).max(0.0);
             // To second order where the rate grows fast: d/dt (friction rate^2) = 2 friction rate d(rate)/dt.
             let growth = 1.0 + friction * slide.rate * dt;
-            let pressing = if normal_acceleration > 0.0 {
-                normal_acceleration
-            } else {
-                0.0
-            };
             let sliding = growth * (friction * pressing - k * slide.sin);
             slide.predict(sliding, dt, self.fastest);
         }
@@ -191,19 +186,12 @@ impl WallFilter {
         let gain = [aa * per_total, ar * per_total];
         let keep = noise * per_total;
         track.covariance = [aa * keep, ar * keep, rr - gain[1] * ar];
-        let (slide, roll) = match followed {
-            Hypotheses::Both => (
-                track.slide.correct(place, gain),
-                track.roll.correct(place, gain),
-            ),
-            Hypotheses::Sliding => {
-                track.slide.correct(place, gain);
-                return;
-            }
-            Hypotheses::Rolling => {
-                track.roll.correct(place, gain);
-                return;
-            }
+        let slides = followed != Hypotheses::Rolling;
+        let rolls = followed != Hypotheses::Sliding;
+        let slide = slides.then(|| track.slide.correct(place, gain));
+        let roll = rolls.then(|| track.roll.correct(place, gain));
+        let (Some(slide), Some(roll)) = (slide, roll) else {
+            return;
         };
         let for_rolling = 0.5 * (slide * slide - roll * roll) * per_total;
         let for_rolling = for_rolling.clamp(-MAX_LLR_PER_SAMPLE, MAX_LLR_PER_SAMPLE);
