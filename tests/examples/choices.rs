@@ -20,6 +20,7 @@ fn main() {
         document: "docs/know/accuracy.md",
         table: "accuracy-choices",
         example: "choices",
+        arguments: "",
     };
     campaign.conclude(&families, place);
 }

@@ -20,6 +20,7 @@ fn main() {
         document: "docs/know/guard.md",
         table: "guard-runs",
         example: "guard",
+        arguments: "",
     };
     campaign.conclude(&families, place);
 }

@@ -24,6 +24,7 @@ fn main() {
         document: "docs/know/detector.md",
         table: "detector-machines",
         example: "machines",
+        arguments: "",
     };
     campaign.tell(&machines, &table(&machines), &failures, place);
 }

@@ -41,6 +41,7 @@ fn main() {
         document: "docs/know/validation.md",
         table: "validation-score",
         example: "score",
+        arguments: "",
     };
     campaign.tell(&json, &table(&score), &failures, place);
     if !failures.is_empty() {

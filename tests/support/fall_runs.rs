@@ -53,6 +53,25 @@ pub struct Falls {
     pub confirmed_before_contact: Option<usize>,
 }
 
+/// Of the sensors.
+#[derive(Clone, Copy, Debug)]
+pub enum Noise {
+    /// 0.3 to 1 um.
+    Usual,
+    /// 1 to 4 um.
+    Loud,
+}
+
+impl Noise {
+    /// um.
+    fn any(self, rng: &mut Rng) -> f64 {
+        match self {
+            Self::Usual => rng.uniform(0.3, 1.0),
+            Self::Loud => rng.uniform(1.0, 4.0),
+        }
+    }
+}
+
 #[derive(Clone, Copy)]
 enum Kind {
     Move,
@@ -65,15 +84,15 @@ enum Kind {
     Drift,
 }
 
-/// The families whose name contains `only`.
-pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Falls> {
+/// The families whose name contains `only`, with that noise.
+pub fn run(only: &str, runs: u64, first_seed: u64, noise: Noise) -> Vec<Falls> {
     let floating = FAMILIES
         .into_iter()
         .filter(|(_, name, _)| name.contains(only))
         .map(|(kinds, name, _)| {
             let outcomes = seeds(runs, first_seed, |rng| {
                 let kinds = kinds(rng);
-                floats(rng, &kinds)
+                floats(rng, &kinds, noise)
             });
             Falls {
                 family: Family::of(name, &outcomes),
@@ -86,7 +105,7 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Falls> {
         .map(|(kinds, _, name)| {
             let outcomes = seeds(runs, first_seed, |rng| {
                 let kinds = kinds(rng);
-                drops(rng, &kinds)
+                drops(rng, &kinds, noise)
             });
             let early = outcomes.iter().filter(|(_, (early, _))| *early).count();
             let outcomes: Vec<_> = outcomes
@@ -101,7 +120,10 @@ pub fn run(only: &str, runs: u64, first_seed: u64) -> Vec<Falls> {
     let lifting = Some("lifts: told wrong by 30 %")
         .filter(|name| name.contains(only))
         .map(|name| Falls {
-            family: Family::of(name, &seeds(runs, first_seed, |rng| Some(lifts(rng)))),
+            family: Family::of(
+                name,
+                &seeds(runs, first_seed, |rng| Some(lifts(rng, noise))),
+            ),
             confirmed_before_contact: None,
         });
     floating.chain(dropping).chain(lifting).collect()
@@ -194,11 +216,16 @@ fn disturb(
 }
 
 /// A machine that is lifted, floats calmly, and is disturbed for the last `after` s before the `end`.
-fn lifted(rng: &mut Rng, kinds: &[Kind], after: f64, end: Option<Phase>) -> (Machine, Run) {
+fn lifted(
+    rng: &mut Rng,
+    (kinds, noise): (&[Kind], Noise),
+    after: f64,
+    end: Option<Phase>,
+) -> (Machine, Run) {
     let machine = machine(rng);
     let rate = any(rng, &[10_000.0, 20_000.0, 50_000.0]);
     let mut told = Told::right(rng);
-    told.chain.noise = rng.uniform(0.3, 4.0);
+    told.chain.noise = noise.any(rng);
     let time = rng.uniform(0.6, 1.5);
     let calm = 0.6;
     let began = 0.3 + 0.2 + calm;
@@ -224,8 +251,8 @@ fn lifted(rng: &mut Rng, kinds: &[Kind], after: f64, end: Option<Phase>) -> (Mac
 }
 
 /// Floats all the time: no fall is confirmed.
-fn floats(rng: &mut Rng, kinds: &[Kind]) -> Option<Result<(), String>> {
-    let (machine, mut run) = lifted(rng, kinds, 0.5, None);
+fn floats(rng: &mut Rng, kinds: &[Kind], noise: Noise) -> Option<Result<(), String>> {
+    let (machine, mut run) = lifted(rng, (kinds, noise), 0.5, None);
     let mut confirmed = None;
     while let Some((truth, _)) = run.step(machine.spin) {
         if truth.phase < DISTURBED {
@@ -252,14 +279,14 @@ fn floats(rng: &mut Rng, kinds: &[Kind]) -> Option<Result<(), String>> {
 }
 
 /// Lies where the wall may read well within the told clearance, is lifted, and floats on an orbit: no fall is confirmed.
-fn lifts(rng: &mut Rng) -> Result<(), String> {
+fn lifts(rng: &mut Rng, noise: Noise) -> Result<(), String> {
     let machine = Machine {
         after: Orbit::Ends,
         ..machine(rng)
     };
     let rate = any(rng, &[10_000.0, 20_000.0, 50_000.0]);
     let mut told = Told::wrong(rng, 0.3);
-    told.chain.noise = rng.uniform(0.3, 3.0);
+    told.chain.noise = noise.any(rng);
     let phases = [
         Phase::Rest {
             time: rng.uniform(0.3, 0.8),
@@ -292,9 +319,9 @@ fn lifts(rng: &mut Rng) -> Result<(), String> {
 
 /// Falls in the midst of it: whether it is confirmed before contact; if not, it is off at the latest 1 ms after it. It is
 /// told in any case, be it since before, as what disturbs it seemed to be one.
-fn drops(rng: &mut Rng, kinds: &[Kind]) -> Option<(bool, Result<(), String>)> {
+fn drops(rng: &mut Rng, kinds: &[Kind], noise: Noise) -> Option<(bool, Result<(), String>)> {
     let after = rng.uniform(0.0, 0.1);
-    let (machine, mut run) = lifted(rng, kinds, after, Some(Phase::Drop { time: 0.15 }));
+    let (machine, mut run) = lifted(rng, (kinds, noise), after, Some(Phase::Drop { time: 0.15 }));
     let (mut ran, mut released, mut contact) = (false, None, None);
     let (mut off, mut confirmed, mut told) = (None, None, false);
     while let Some((truth, shown)) = run.step(machine.spin) {

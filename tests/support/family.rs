@@ -43,8 +43,10 @@ pub struct Place {
     pub document: &'static str,
     /// Name of its table.
     pub table: &'static str,
-    /// The example.
+    /// The example, and what it is told besides the seeds.
     pub example: &'static str,
+    /// With a blank before each.
+    pub arguments: &'static str,
 }
 
 impl Campaign {
@@ -76,8 +78,8 @@ impl Campaign {
                 runs, first_seed, ..
             } = self.asked;
             let command = format!(
-                "cargo run --release -p touchdown-tests --example {} -- --runs {runs} --first-seed {first_seed}",
-                place.example
+                "cargo run --release -p touchdown-tests --example {} --{} --runs {runs} --first-seed {first_seed}",
+                place.example, place.arguments
             );
             record(place.document, place.table, &command, table)
                 .unwrap_or_else(|why| panic!("{why}"));

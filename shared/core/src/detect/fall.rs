@@ -11,11 +11,14 @@ use crate::event::Moment;
 use crate::vector::{length, sum};
 use touchdown_rotor::real::sqrt;
 
-/// Length of a block, s.
+/// Length of a block, about, s.
 const BLOCK: f32 = 0.25e-3;
-/// Blocks that are kept, and those that a fall since an onset is fitted to where that is sharp, or else all since then.
-const BLOCKS: usize = 16;
-const SHORT: usize = 8;
+/// Time over which blocks are kept, s. A fall since an onset is fitted to those of its last half where that is sharp, or else
+/// to all since then.
+const KEPT: f32 = 4e-3;
+/// Blocks in it, at the least and at most: a block has a whole number of samples.
+const FEWEST: f32 = 12.0;
+const BLOCKS: usize = 24;
 
 /// Least time since the onset, and speed as a time of fall, s: a loop of 60 Hz and more has lost half of the
 /// acceleration by then. A longer fit has its middle then where that of the short one would be.
@@ -41,9 +44,6 @@ const SHARP: f32 = 0.2;
 /// Part of the clearance beyond which a bounce may look like a fall, and how long it may after it, s.
 const NEAR: f32 = 0.67;
 const BOUNCES: f32 = 20e-3;
-/// Blocks in a row in which a rotor comes back that withdraw a declared fall: one that left an orbit may seem to for half
-/// as long.
-const BACK: u8 = 16;
 /// Part of gravity by which an acceleration is unlike it, beside three standard deviations.
 const OTHER: f32 = 0.4;
 
@@ -52,8 +52,10 @@ const OTHER: f32 = 0.4;
 pub(crate) struct FallTest {
     period: f32,
     gravity: f32,
-    /// Samples of a block.
+    /// Samples of a block, and blocks over the time that they are kept, over half of it.
     stride: u16,
+    all: usize,
+    half: usize,
     /// Square of the distance beyond which a bounce may look like a fall, m^2, and samples that it may.
     near: f32,
     bounces: u32,
@@ -101,10 +103,15 @@ impl FallTest {
     pub(crate) fn new(config: &DetectorConfig) -> Self {
         let (rate, machine) = (config.sample_rate, &config.machine);
         let near = NEAR * machine.clearance;
+        let stride = (BLOCK * rate + 0.5).max(1.0) as u16;
+        let blocks = KEPT * rate / f32::from(stride) + 0.5;
+        let all = blocks.clamp(FEWEST, BLOCKS as f32) as usize;
         Self {
             period: 1.0 / rate,
             gravity: machine.gravity,
-            stride: (BLOCK * rate).max(1.0) as u16,
+            stride,
+            all,
+            half: all / 2,
             near: near * near,
             bounces: (BOUNCES * rate) as u32,
         }
@@ -151,17 +158,17 @@ impl FallTest {
     /// After a full block, of positions with this variance on each axis (m^2), of a rotor that `orbits` or not: a fall that
     /// nothing declared; samples since its onset.
     pub(crate) fn unforeseen(&self, blocks: &Blocks, variance: f32, orbits: bool) -> Option<f32> {
-        if blocks.filled < BLOCKS || blocks.since_wall < self.bounces || self.gravity == 0.0 {
+        if blocks.filled < self.all || blocks.since_wall < self.bounces || self.gravity == 0.0 {
             return None;
         }
         (usize::from(!orbits)..2).find_map(|part| {
             // Gone down by half of what such a speed makes: cheaper than the fit.
-            let span = f32::from(self.stride) * self.period * (SHORT - 1) as f32;
-            let way = blocks.back(0, part)[1] - blocks.back(SHORT - 1, part)[1];
+            let span = f32::from(self.stride) * self.period * (self.half - 1) as f32;
+            let way = blocks.back(0, part)[1] - blocks.back(self.half - 1, part)[1];
             if way > -0.5 * FREE_SPEED * self.gravity * span {
                 return None;
             }
-            let fit = self.fit(blocks, part, BLOCKS, None, variance);
+            let fit = self.fit(blocks, part, self.all, None, variance);
             let g = self.gravity;
             let [part, sigmas] = FREE;
             let falls = fit.change_error < SHARP * g
@@ -191,14 +198,14 @@ impl FallTest {
         let since = (now.since(pending.since) - late) * self.period;
         let passed = now.since(pending.declared) - late;
         let since_onset = since / (f32::from(self.stride) * self.period);
-        let whole = (since_onset as usize).min(blocks.filled);
-        if whole < SHORT {
+        let whole = (since_onset as usize).min(blocks.filled).min(self.all);
+        if whole < self.half {
             return FallVerdict::Open;
         }
         let mut comes_back = true;
         for (part, path) in pending.paths.iter().enumerate().skip(usize::from(!orbits)) {
             let fit_of = |number| self.fit(blocks, part, number, Some((path, passed)), variance);
-            let fit = fit_of(SHORT);
+            let fit = fit_of(self.half);
             let is_sharp = fit.error < SHARP * self.gravity;
             let sharpest = if is_sharp { fit } else { fit_of(whole) };
             if self.is_fall(&sharpest, since) && self.is_steady(&fit_of(whole)) {
@@ -209,7 +216,8 @@ impl FallTest {
             comes_back &= u * x + v * y <= 0.0 && !(falls && self.gravity > 0.0);
         }
         pending.back = if comes_back { pending.back + 1 } else { 0 };
-        if pending.back >= BACK {
+        // One that left an orbit may seem to come back for half as long.
+        if usize::from(pending.back) >= self.all {
             FallVerdict::Caught
         } else {
             FallVerdict::Open
@@ -294,7 +302,7 @@ impl FallTest {
         fit.place_error = sigma * sqrt(1.0 / n + end * end * by_first + p * p * by_second);
         fit.error = 2.0 * sigma * sqrt(by_second) / square_span;
         fit.change_error = 6.0 * end * sigma * sqrt(by_third) / square_span;
-        fit.longer = (n - SHORT as f32) * span;
+        fit.longer = (n - self.half as f32) * span;
         fit
     }
 }
@@ -334,5 +342,32 @@ impl Blocks {
             since_wall,
             ..Self::default()
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Tuning;
+    use crate::detect::series::tests::MACHINE;
+
+    fn test(sample_rate: f32) -> FallTest {
+        FallTest::new(&DetectorConfig {
+            sample_rate,
+            machine: MACHINE,
+            tuning: Tuning::default(),
+        })
+    }
+
+    #[test]
+    fn blocks_take_four_milliseconds() {
+        for rate in [
+            5_000.0, 6_000.0, 8_000.0, 10_000.0, 13_900.0, 20_000.0, 50_000.0, 200_000.0,
+        ] {
+            let test = test(rate);
+            let time = test.all as f32 * f32::from(test.stride) / rate;
+            assert!((3.5e-3..4.5e-3).contains(&time), "{rate}: {time}");
+            assert!(test.all <= BLOCKS, "{rate}");
+        }
     }
 }
