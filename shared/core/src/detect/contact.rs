@@ -143,12 +143,12 @@ impl ContactTest {
         }
     }
 
-    /// Takes the next sample, or its absence. It shows where the wall is. `pull`: acceleration of flights and its standard
-    /// deviation, m/s^2; whether the rotor moves as one.
+    /// Takes the next sample, or its absence. It shows where the `wall` is, which certainly pushes beyond that radius, m. `pull`:
+    /// acceleration of flights and its standard deviation, m/s^2; whether the rotor moves as one.
     pub(crate) fn take(
         &self,
         state: &mut Touching,
-        wall: &mut RetainerWall,
+        wall: (&mut RetainerWall, f32),
         pull: (&Pull, bool),
         measurement: Option<&Measurement>,
         signals: &Signals,
@@ -189,7 +189,7 @@ impl ContactTest {
     fn lift_off(
         &self,
         state: &mut Touching,
-        wall: &mut RetainerWall,
+        (wall, free): (&mut RetainerWall, f32),
         measurement: &Measurement,
     ) -> Option<f32> {
         let lift = &mut state.lift;
@@ -197,7 +197,7 @@ impl ContactTest {
         let found = lift.take(
             measurement.position,
             beside.radius,
-            beside.gap,
+            beside.gap.min(free - beside.radius),
             variance + beside.variance,
             self.threshold,
         );
@@ -437,7 +437,8 @@ mod tests {
                 variance: 2e-10,
                 spin: 0.0,
             };
-            test.lift_off(&mut state, &mut wall, &measurement).is_some()
+            test.lift_off(&mut state, (&mut wall, f32::INFINITY), &measurement)
+                .is_some()
         });
         let lifted = lifted(found.expect("found"));
         assert!((185e-6..215e-6).contains(&lifted), "{lifted}");
@@ -482,7 +483,8 @@ mod tests {
                 variance: 32e-12,
                 spin: 0.0,
             };
-            test.lift_off(&mut state, &mut wall, &measurement).is_some()
+            test.lift_off(&mut state, (&mut wall, f32::INFINITY), &measurement)
+                .is_some()
         });
         let [x, y] = place(found.expect("found"));
         let gap = radius - sqrt(x * x + y * y);
@@ -515,7 +517,7 @@ mod tests {
             let now = measurement(k);
             let found = test.take(
                 &mut state,
-                &mut wall,
+                (&mut wall, f32::INFINITY),
                 (&pull, is_whole),
                 Some(&now),
                 &signals,

@@ -52,10 +52,9 @@ const OTHER: f32 = 0.4;
 pub(crate) struct FallTest {
     period: f32,
     gravity: f32,
-    /// Samples of a block, and blocks over the time that they are kept, over half of it.
+    /// Samples of a block, and half of the blocks that are kept.
     stride: u16,
-    all: usize,
-    half: usize,
+    half: u16,
     /// Square of the distance beyond which a bounce may look like a fall, m^2, and samples that it may.
     near: f32,
     bounces: u32,
@@ -104,17 +103,24 @@ impl FallTest {
         let (rate, machine) = (config.sample_rate, &config.machine);
         let near = NEAR * machine.clearance;
         let stride = (BLOCK * rate + 0.5).max(1.0) as u16;
-        let blocks = KEPT * rate / f32::from(stride) + 0.5;
-        let all = blocks.clamp(FEWEST, BLOCKS as f32) as usize;
+        let blocks = (KEPT * rate / f32::from(stride)).clamp(FEWEST, BLOCKS as f32);
         Self {
             period: 1.0 / rate,
             gravity: machine.gravity,
             stride,
-            all,
-            half: all / 2,
+            half: (0.5 * blocks + 0.5) as u16,
             near: near * near,
             bounces: (BOUNCES * rate) as u32,
         }
+    }
+
+    /// Blocks that are kept, and half of them.
+    fn all(&self) -> usize {
+        2 * self.half()
+    }
+
+    fn half(&self) -> usize {
+        usize::from(self.half)
     }
 
     /// Takes a position (m), as it is and without the orbit; true where a block is full.
@@ -158,17 +164,17 @@ impl FallTest {
     /// After a full block, of positions with this variance on each axis (m^2), of a rotor that `orbits` or not: a fall that
     /// nothing declared; samples since its onset.
     pub(crate) fn unforeseen(&self, blocks: &Blocks, variance: f32, orbits: bool) -> Option<f32> {
-        if blocks.filled < self.all || blocks.since_wall < self.bounces || self.gravity == 0.0 {
+        if blocks.filled < self.all() || blocks.since_wall < self.bounces || self.gravity == 0.0 {
             return None;
         }
         (usize::from(!orbits)..2).find_map(|part| {
             // Gone down by half of what such a speed makes: cheaper than the fit.
-            let span = f32::from(self.stride) * self.period * (self.half - 1) as f32;
-            let way = blocks.back(0, part)[1] - blocks.back(self.half - 1, part)[1];
+            let span = f32::from(self.stride) * self.period * f32::from(self.half - 1);
+            let way = blocks.back(0, part)[1] - blocks.back(self.half() - 1, part)[1];
             if way > -0.5 * FREE_SPEED * self.gravity * span {
                 return None;
             }
-            let fit = self.fit(blocks, part, self.all, None, variance);
+            let fit = self.fit(blocks, part, self.all(), None, variance);
             let g = self.gravity;
             let [part, sigmas] = FREE;
             let falls = fit.change_error < SHARP * g
@@ -198,14 +204,14 @@ impl FallTest {
         let since = (now.since(pending.since) - late) * self.period;
         let passed = now.since(pending.declared) - late;
         let since_onset = since / (f32::from(self.stride) * self.period);
-        let whole = (since_onset as usize).min(blocks.filled).min(self.all);
-        if whole < self.half {
+        let whole = (since_onset as usize).min(blocks.filled).min(self.all());
+        if whole < self.half() {
             return FallVerdict::Open;
         }
         let mut comes_back = true;
         for (part, path) in pending.paths.iter().enumerate().skip(usize::from(!orbits)) {
             let fit_of = |number| self.fit(blocks, part, number, Some((path, passed)), variance);
-            let fit = fit_of(self.half);
+            let fit = fit_of(self.half());
             let is_sharp = fit.error < SHARP * self.gravity;
             let sharpest = if is_sharp { fit } else { fit_of(whole) };
             if self.is_fall(&sharpest, since) && self.is_steady(&fit_of(whole)) {
@@ -217,7 +223,7 @@ impl FallTest {
         }
         pending.back = if comes_back { pending.back + 1 } else { 0 };
         // One that left an orbit may seem to come back for half as long.
-        if usize::from(pending.back) >= self.all {
+        if usize::from(pending.back) >= self.all() {
             FallVerdict::Caught
         } else {
             FallVerdict::Open
@@ -302,7 +308,7 @@ impl FallTest {
         fit.place_error = sigma * sqrt(1.0 / n + end * end * by_first + p * p * by_second);
         fit.error = 2.0 * sigma * sqrt(by_second) / square_span;
         fit.change_error = 6.0 * end * sigma * sqrt(by_third) / square_span;
-        fit.longer = (n - self.half as f32) * span;
+        fit.longer = (n - f32::from(self.half)) * span;
         fit
     }
 }
@@ -365,9 +371,9 @@ mod tests {
             5_000.0, 6_000.0, 8_000.0, 10_000.0, 13_900.0, 20_000.0, 50_000.0, 200_000.0,
         ] {
             let test = test(rate);
-            let time = test.all as f32 * f32::from(test.stride) / rate;
-            assert!((3.5e-3..4.5e-3).contains(&time), "{rate}: {time}");
-            assert!(test.all <= BLOCKS, "{rate}");
+            let time = test.all() as f32 * f32::from(test.stride) / rate;
+            assert!((3.6e-3..4.3e-3).contains(&time), "{rate}: {time}");
+            assert!(test.all() <= BLOCKS, "{rate}");
         }
     }
 }

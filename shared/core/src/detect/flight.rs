@@ -99,6 +99,11 @@ pub(crate) struct Airborne {
     touch: Option<OpenTouch>,
     /// When the last impact was.
     met: Option<Moment>,
+    /// Radius beyond which a wall that gives way is displaced and pushes, m: where it was first met, or is told, whichever is
+    /// farther out.
+    free: f32,
+    /// Whether the rotor has been off it since the last impact.
+    was_off: bool,
     near_wall: u32,
     /// Samples in a row, without impact, in which it is seen near the wall, wherever it should be.
     seen_near: u32,
@@ -139,6 +144,8 @@ impl Airborne {
         self.is_rigid = other.is_rigid;
         self.lies = other.lies;
         self.held = other.held;
+        self.free = other.free;
+        self.was_off = other.was_off;
         self.restart(other.bank.threshold_scale);
     }
 }
@@ -260,13 +267,18 @@ impl FlightTest {
         flight.pull.unwrap_or(self.told_pull)
     }
 
-    /// The wall, and what acts.
+    /// The wall, beyond which radius (m) that certainly pushes, and what acts.
     pub(crate) fn seen_in_contact<'a>(
         &'a self,
         flight: &'a mut Airborne,
-    ) -> (&'a mut RetainerWall, &'a Pull) {
+    ) -> ((&'a mut RetainerWall, f32), &'a Pull) {
+        let free = if flight.gives {
+            flight.free
+        } else {
+            f32::INFINITY
+        };
         let pull = flight.pull.as_ref().unwrap_or(&self.told_pull);
-        (&mut flight.wall, pull)
+        ((&mut flight.wall, free), pull)
     }
 
     /// The same in a flight that begins. Where the sensors are loud while the rotor floats, it does not show the stiffness.
@@ -366,6 +378,7 @@ impl FlightTest {
             flight.wall.take(place, variance, &self.told);
             self.lie_at(flight, place);
         }
+        flight.was_off |= !flight.gives || is_within(measurement.position, flight.free);
         self.ballistic.predict(&mut flight.track);
         let lies = |age| Landing { age, impact: None };
         if flight.touch.as_ref().is_some_and(OpenTouch::gives) {
@@ -445,6 +458,8 @@ impl FlightTest {
         match touch.look(out, sqrt(noise), gone) {
             TouchStage::GivesWay => {
                 flight.gives = true;
+                let (_, met) = touch.place;
+                (flight.free, flight.was_off) = (met.max(self.told.radius), false);
                 flight.wall.shrink(touch.slack);
                 let (at, noise) = (measurement.position, measurement.variance);
                 (flight.track).go_on_at(at, noise, speed, speed * self.per_horizon);
@@ -508,6 +523,7 @@ impl FlightTest {
         let way = hit.bounce.normal_speed * part * hit.age * self.period;
         flight.lifted = None;
         flight.met = Some(hit.bounce.at);
+        flight.was_off = false;
         flight.touch = (!flight.is_rigid).then(|| OpenTouch::new(direction(hit.place), way));
         (flight.seen_near, flight.lying) = (0, 0);
         Landing {
@@ -731,6 +747,35 @@ mod tests {
         );
         test.start(&mut flight, &measurement, None, 1.0);
         assert!(!flight.is_rigid && flight.give() == 0.0, "in another fall");
+    }
+
+    /// At 150 Hz, where the wall is displaced by a tenth of the clearance on average. It pushes all the time where the rotor
+    /// swings by less than that, and is left in every swing where it swings by more.
+    #[test]
+    fn a_rotor_that_swings_on_a_displaced_wall_has_no_impacts() {
+        let test = test(20_000.0);
+        let impacts = |amplitude: f32| {
+            let mut seed = 1;
+            let mut flight = Airborne::default();
+            let measurement = |k: u16, seed: &mut u64| Measurement {
+                now: Moment::of_sample(k.into()),
+                position: [
+                    7e-7 * white(seed),
+                    7e-7 * white(seed)
+                        - (1.1 * MACHINE.clearance
+                            + amplitude * libm::sinf(TAU * 150.0 * f32::from(k) / 20_000.0)),
+                ],
+                variance: 5e-13,
+                spin: 0.0,
+            };
+            test.start(&mut flight, &measurement(0, &mut seed), None, 1.0);
+            (flight.gives, flight.free) = (true, MACHINE.clearance);
+            let landings =
+                (1..800).filter_map(|k| test.take(&mut flight, &measurement(k, &mut seed), None));
+            landings.filter(|it| it.impact.is_some()).count()
+        };
+        assert_eq!(impacts(0.09 * MACHINE.clearance), 0);
+        assert!(impacts(0.3 * MACHINE.clearance) > 3);
     }
 
     /// A rotor that was off the wall after the foreseen end did not lie there since.

@@ -33,8 +33,8 @@ pub(super) struct Hit {
 }
 
 impl FlightTest {
-    /// Whether a jump is an impact: at the wall, going outward, and faster than the jumps that a
-    /// rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
+    /// Whether a jump is an impact: at the wall, which the rotor has been off since the last one, going outward, and faster than
+    /// the jumps that a rotor lying on the wall seems to make. Such a rotor does not fall as the filter expects, which
     /// it finds after the time t in which a fall is found, as a jump of pressing times t.
     pub(super) fn judge(
         &self,
@@ -98,7 +98,7 @@ impl FlightTest {
         } else {
             self.near(flight, n)
         };
-        let is_hit = radius >= near && bounce.normal_speed > least;
+        let is_hit = flight.was_off && radius >= near && bounce.normal_speed > least;
         is_hit.then_some(Hit {
             bounce,
             age,
