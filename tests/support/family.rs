@@ -43,9 +43,9 @@ pub struct Place {
     pub document: &'static str,
     /// Name of its table.
     pub table: &'static str,
-    /// The example, and what it is told besides the seeds.
+    /// The example.
     pub example: &'static str,
-    /// With a blank before each.
+    /// What it is told besides the seeds, with a blank before each.
     pub arguments: &'static str,
 }
 

@@ -422,6 +422,31 @@ mod tests {
         ContactTest::new(&config, 25.0)
     }
 
+    /// It lies 50 um beyond where the wall was met, and comes inward by so much at 10 mm/s: a wall that gives way comes along, as
+    /// far as it was displaced.
+    #[test]
+    fn a_displaced_wall_holds_the_rotor_up_to_where_it_was_met() {
+        let test = test();
+        let is_told = |depth: f32, free: f32| {
+            let (mut state, mut wall) = (Touching::default(), RetainerWall::default());
+            wall.meet(&TOLD);
+            (0..1_000_u16).any(|k| {
+                let gone = (0.01 * f32::from(k.max(500) - 500) / SAMPLE_RATE).min(depth);
+                let measurement = Measurement {
+                    now: Moment::of_sample(k.into()),
+                    position: [0.0, -(MACHINE.clearance + 50e-6 - gone)],
+                    variance: 1e-12,
+                    spin: 0.0,
+                };
+                let wall = (&mut wall, free);
+                test.lift_off(&mut state, wall, &measurement).is_some()
+            })
+        };
+        assert!(is_told(45e-6, f32::INFINITY));
+        assert!(!is_told(45e-6, MACHINE.clearance));
+        assert!(is_told(80e-6, MACHINE.clearance));
+    }
+
     /// 1.4 mm/s, where an orbit of 10 um wavers more than the wall's learnt place lags.
     #[test]
     fn a_slow_lift_that_takes_the_wall_along_is_found() {
