@@ -38,6 +38,7 @@ pub fn settings() -> Settings {
                 full_scale: 4_095,
                 mounting_angle: [0.0; 2],
                 calibration: None,
+                places: None,
             },
             tachometers: None,
             detector: DetectorConfig {

@@ -181,6 +181,7 @@ pub fn config(machine: &Machine, told_gap: f64, rate: f64) -> MonitorConfig {
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
             calibration: None,
+            places: None,
         },
         tachometers: None,
         detector: DetectorConfig {

@@ -95,6 +95,7 @@ pub fn default_config() -> MonitorConfig {
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
             calibration: None,
+            places: None,
         },
         tachometers: None,
         detector: DetectorConfig {

@@ -39,6 +39,7 @@ use std::path::Path;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::sensing::SensingConfig;
 
 use crate::scales::compliance;
 use crate::sensors::{SensorFault, SensorsConfig, Tachometers};
@@ -221,7 +222,10 @@ impl Scene {
     pub fn monitor_config(&self) -> MonitorConfig {
         MonitorConfig {
             fitted: self.sensors.fitted(),
-            sensing: self.sensors.sensing(),
+            sensing: SensingConfig {
+                places: self.two_plane.as_ref().and_then(TwoPlane::places),
+                ..self.sensors.sensing()
+            },
             tachometers: self.sensors.tachometers.as_ref().map(Tachometers::config),
             detector: DetectorConfig {
                 sample_rate: self.run.sample_rate as f32,

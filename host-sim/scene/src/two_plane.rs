@@ -1,6 +1,7 @@
 //! `[two_plane]` and `[[ring]]`: a rotor that tilts, in retainer rings at their places.
 
 use serde::Deserialize;
+use touchdown_core::sensing::AxialPlaces;
 use touchdown_models::UnbalanceConfig;
 
 use super::base::Base;
@@ -45,6 +46,22 @@ pub struct TwoPlane {
     pub modes: Vec<Mode>,
     /// Motion of what the machine stands on.
     pub base: Option<Base>,
+}
+
+impl TwoPlane {
+    /// Where the sensors and the outermost rings are, where they are apart and the sensors show what the rotor does at the rings.
+    pub fn places(&self) -> Option<AxialPlaces> {
+        let [a, b] = self.sensors;
+        let mut rings = ends(&self.rings);
+        if a > b {
+            rings.reverse();
+        }
+        let places = AxialPlaces {
+            sensors: self.sensors.map(|it| it as f32),
+            rings: rings.map(|it| it as f32),
+        };
+        (self.sensors != rings && places.overhang().is_some()).then_some(places)
+    }
 }
 
 /// A retainer ring.
@@ -235,9 +252,7 @@ impl TwoPlaneTable {
         modes: &[ModeTable],
     ) -> Result<TwoPlane, Diagnostic> {
         let rings = all_rings(rotor, retainer, rings)?;
-        let ends = rings.iter().map(|ring| ring.place);
-        let lowest = ends.clone().fold(f64::INFINITY, f64::min);
-        let ends = [lowest, ends.fold(f64::NEG_INFINITY, f64::max)];
+        let ends = ends(&rings);
         let places = |it: [f64; 2]| it.map(|place| MILLI * place);
         Ok(TwoPlane {
             transverse_inertia: self.transverse_inertia(rotor)?,
@@ -289,6 +304,13 @@ impl TwoPlaneTable {
         );
         Err(KEYS.broken(key, rule))
     }
+}
+
+/// Places of the outermost ones, m.
+fn ends(rings: &[Ring]) -> [f64; 2] {
+    let places = rings.iter().map(|ring| ring.place);
+    let lowest = places.clone().fold(f64::INFINITY, f64::min);
+    [lowest, places.fold(f64::NEG_INFINITY, f64::max)]
 }
 
 fn all_rings(

@@ -100,7 +100,7 @@ impl Monitor {
         Ok(Self {
             sensing: Sensing::try_new(&config.sensing)?,
             tachometers: tachometers.transpose()?,
-            detector: Detector::try_new(detector, config.sensing.resolution)?,
+            detector: Detector::try_new(detector, &config.sensing)?,
             health: Health::new(detector, &config.sensing, config.fitted),
             spin: SpinCheck::new(detector),
             severeness: SeverityModel::new(detector),

@@ -1,5 +1,7 @@
 //! Counts to displacement: what the converter delivers becomes the rotor's position in the scene's axes.
 
+use core::ops::RangeInclusive;
+
 use crate::fault::Found;
 use crate::sample::{CHANNELS, Sample};
 use touchdown_rotor::error::ConfigError;
@@ -22,6 +24,35 @@ pub struct SensingConfig {
     pub mounting_angle: [f32; PLANES],
     /// What a commissioning check found; `None` where there was none.
     pub calibration: Option<Calibration>,
+    /// Where sensors and retainer are along the shaft; `None` where they are at the same places.
+    pub places: Option<AxialPlaces>,
+}
+
+/// Places along the shaft, m, from any point.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct AxialPlaces {
+    /// Of the sensors of each plane.
+    pub sensors: [f32; PLANES],
+    /// Of the retainer's ring at the end of each plane.
+    pub rings: [f32; PLANES],
+}
+
+/// How far a ring may lie beyond its sensors, in distances between the sensors: farther in the ends could not be told apart,
+/// farther out the sensors' noise would be all that is seen.
+const OVERHANG: RangeInclusive<f32> = -0.45..=10.0;
+
+impl AxialPlaces {
+    /// How far each ring lies beyond its sensors, away from the others, in distances between the sensors; `None` where that
+    /// is not -0.45 to 10.
+    pub fn overhang(&self) -> Option<[f32; PLANES]> {
+        let ([a, b], [ring_a, ring_b]) = (self.sensors, self.rings);
+        let apart = b - a;
+        let overhang = [(a - ring_a) / apart, (ring_b - b) / apart];
+        overhang
+            .iter()
+            .all(|it| OVERHANG.contains(it))
+            .then_some(overhang)
+    }
 }
 
 impl SensingConfig {
@@ -201,15 +232,16 @@ impl Sensing {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const CONFIG: SensingConfig = SensingConfig {
+    pub(crate) const CONFIG: SensingConfig = SensingConfig {
         resolution: 0.5e-6,
         zero_count: 2_048.0,
         full_scale: 4_095,
         mounting_angle: [0.3, -2.0],
         calibration: None,
+        places: None,
     };
     const PLANE: PlaneCalibration = PlaneCalibration {
         zero: [40e-6, -25e-6],

@@ -13,7 +13,7 @@ use touchdown_core::monitor::{Monitor, MonitorConfig};
 use touchdown_rotor::error::ConfigError;
 
 /// First bytes of a block; the last is the version.
-pub const MAGIC: [u8; 4] = *b"TDC\x04";
+pub const MAGIC: [u8; 4] = *b"TDC\x05";
 /// Most bytes of a block.
 pub const BLOCK_BYTES: usize = 384;
 const HEAD: usize = MAGIC.len() + 2;

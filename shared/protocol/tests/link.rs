@@ -5,7 +5,7 @@ use touchdown_core::checksum::CRC;
 use touchdown_core::detect::{DetectorConfig, MachineConfig, Phase, Tuning};
 use touchdown_core::event::{Act, Notice, Ordered};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::sensing::{Calibration, SensingConfig};
+use touchdown_core::sensing::{AxialPlaces, Calibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block;
 use touchdown_protocol::config_block::{BlockError, KEY_BYTES, Key, Settings, Wiring};
@@ -64,6 +64,10 @@ fn settings() -> Settings {
                 calibration: Some(Calibration {
                     date: u32::MAX,
                     ..Calibration::default()
+                }),
+                places: Some(AxialPlaces {
+                    sensors: [-0.241, 0.119],
+                    rings: [-0.241, 0.139],
                 }),
             },
             tachometers: Some(TachometersConfig {
@@ -527,7 +531,7 @@ fn what_is_no_block_says_why() {
     let block = config_block::encode(&settings());
     assert_eq!(config_block::decode(&[0xff; 400]), Err(BlockError::Blank));
     assert_eq!(
-        config_block::decode(b"TDC\x03......"),
+        config_block::decode(b"TDC\x04......"),
         Err(BlockError::Version)
     );
     for length in 6..block.len() {

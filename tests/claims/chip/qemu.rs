@@ -28,6 +28,7 @@ fn config() -> MonitorConfig {
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
             calibration: None,
+            places: None,
         },
         tachometers: None,
         detector: DetectorConfig {

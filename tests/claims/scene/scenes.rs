@@ -6,6 +6,7 @@ use std::path::Path;
 use predicates::str::contains;
 use serde_json::Value;
 use tempfile::TempDir;
+use touchdown_core::sensing::AxialPlaces;
 use touchdown_run::explain::explain;
 use touchdown_scene::{BUILT_IN, Precision, Scene};
 use touchdown_tests::binary::touchdown;
@@ -399,4 +400,27 @@ fn a_scene_without_gravity_is_explained_too() {
         .text
         .replace("duration_s", "gravity_m_s2 = 0\nduration_s");
     assert!(explain(&Scene::parse("s", &text).unwrap()).contains("no gravity"));
+}
+
+#[test]
+fn the_monitor_knows_where_its_sensors_are() {
+    let places = |name: &str, from: &str, to: &str| {
+        let text = BUILT_IN.iter().find(|it| it.name == name).unwrap().text;
+        assert!(text.contains(from), "{from} is not in {name}");
+        let scene = Scene::parse(name, &text.replacen(from, to, 1)).unwrap();
+        scene.monitor_config().sensing.places
+    };
+    let told = |sensors: [f32; 2], rings: [f32; 2]| Some(AxialPlaces { sensors, rings });
+    let line = "sensor_z_mm = [-241.0, 119.0]";
+    for (planes, expected) in [
+        ("[-241.0, 119.0]", told([-0.241, 0.119], [-0.241, 0.139])),
+        ("[119.0, -241.0]", told([0.119, -0.241], [0.139, -0.241])),
+        // At the rings, and where they show nothing of them.
+        ("[-241.0, 139.0]", None),
+        ("[100.0, 100.0]", None),
+    ] {
+        let to = format!("sensor_z_mm = {planes}");
+        assert_eq!(places("mse-rig", line, &to), expected, "{planes}");
+    }
+    assert_eq!(places("rig", "[rotor]", "[rotor]"), None);
 }

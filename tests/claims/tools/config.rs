@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use touchdown_protocol::config_block::{Key, Settings};
 use touchdown_protocol::controller::Mode;
-use touchdown_core::sensing::{Calibration, PlaneCalibration};
+use touchdown_core::sensing::{AxialPlaces, Calibration, PlaneCalibration};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_files::configuration::{differences, parse, text};
 use touchdown_files::link::Client;
@@ -170,6 +170,16 @@ fn what_is_wrong_is_said_with_its_line_before_anything_is_sent() {
             "the list must have 2 numbers, has 3",
         ),
         ("full_scale = 4095", "full_scale = 70000", "full_scale"),
+        (
+            "full_scale = 4095",
+            "full_scale = 4095\nsensor_z_mm = [-241.0, 119.0]",
+            "ring_z_mm must be given where sensor_z_mm is",
+        ),
+        (
+            "full_scale = 4095",
+            "full_scale = 4095\nsensor_z_mm = [-241.0, 119.0]\nring_z_mm = [-241.0, -139.0]",
+            "c.toml:22: ring_z_mm must be -0.45 to 10",
+        ),
         ("\"ay\", ", "", "channels must be"),
         (
             "impact_instants = 16",
@@ -210,7 +220,14 @@ fn no_part_of_a_file_is_taken_for_all_of_it() {
         edge_error: 1e-3,
         window: 0.01,
     });
-    for whole in [plain, keyed, text(&bearing)] {
+    let mut apart = settings();
+    apart.monitor.sensing.places = Some(AxialPlaces {
+        sensors: [-0.241, 0.119],
+        rings: [-0.241, 0.139],
+    });
+    let apart = text(&apart);
+    assert!(apart.contains("ring_z_mm = [-241.0, 139.0]"), "{apart}");
+    for whole in [plain, keyed, text(&bearing), apart] {
         assert!(parse("c.toml", &whole).is_ok(), "{whole}");
         for length in 0..whole.len() {
             let cut = parse("c.toml", &whole[..length]);

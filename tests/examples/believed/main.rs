@@ -158,6 +158,19 @@ fn runout(r: &mut Rng) -> Case {
     }
     c
 }
+fn soft_gap(r: &mut Rng) -> Case {
+    let mut c = soft(r);
+    c.told.gap = 1.0 + r.uniform(-0.3, 0.3);
+    c
+}
+
+fn soft_centre(r: &mut Rng) -> Case {
+    let mut c = soft(r);
+    let (far, at) = (c.m.gap * r.uniform(0.1, 0.3), r.uniform(0.0, TAU));
+    c.told.zero = [far * at.cos(), far * at.sin()];
+    c
+}
+
 fn soft(r: &mut Rng) -> Case {
     let mut c = ideal(r);
     c.m.soft = Some([
@@ -221,7 +234,7 @@ fn shock(r: &mut Rng) -> Case {
 /// A family: its name, and a case of it.
 type Family = (&'static str, fn(&mut Rng) -> Case);
 
-const FAMILIES: [Family; 21] = [
+const FAMILIES: [Family; 23] = [
     ("ideal", ideal),
     ("orbit 5-30 um", orbit),
     ("carried 50-85 %", carried),
@@ -240,6 +253,8 @@ const FAMILIES: [Family; 21] = [
     ("all wrong", wrong),
     ("runout 2-8 um", runout),
     ("soft wall with a stop", soft),
+    ("soft, gap told +-30 %", soft_gap),
+    ("soft, centre off 10-30 %", soft_centre),
     ("vertical", vertical),
     ("rub while held", rub),
     ("shock while held", shock),
@@ -295,6 +310,7 @@ fn told_config(c: &Case, rate: f64) -> MonitorConfig {
             full_scale: 4_095,
             mounting_angle: [0.0; 2],
             calibration: None,
+            places: None,
         },
         tachometers: None,
         detector: DetectorConfig {

@@ -74,6 +74,7 @@ fn key_of(error: &ConfigError) -> Diagnostic {
     let parameter = error.parameter();
     let (table, key) = match parameter {
         "resolution" => ("sensors", "resolution_um"),
+        "ring_z" => ("sensors", "ring_z_mm"),
         "zero_count" | "full_scale" | "pulses_per_turn" => ("sensors", parameter),
         "marks" => ("ball_bearing", "inner_ring_marks"),
         "bore_radius" => ("ball_bearing", "bore_radius_mm"),

@@ -5,7 +5,7 @@ use touchdown_core::detect::{DetectorConfig, Tuning};
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
 use touchdown_core::sample::CHANNELS;
-use touchdown_core::sensing::{Calibration, PLANES, PlaneCalibration, SensingConfig};
+use touchdown_core::sensing::{AxialPlaces, Calibration, PLANES, PlaneCalibration, SensingConfig};
 use touchdown_core::tachometer::TachometersConfig;
 use touchdown_protocol::config_block::{Settings, Wiring};
 
@@ -16,7 +16,7 @@ use touchdown_scene::diagnostic::Diagnostic;
 use touchdown_scene::file::{RetainerTable, RotorTable};
 use touchdown_scene::machine::rotor;
 use touchdown_scene::names::channel_name;
-use touchdown_scene::rule::{MICRO, MILLI, RPM, exactly};
+use touchdown_scene::rule::{MICRO, MILLI, RPM, exactly, exactly_if_there};
 use touchdown_scene::{Retainer, machine_config};
 
 /// Digits that tell every f32 from its neighbours.
@@ -58,6 +58,12 @@ struct SensorsTable {
     full_scale: u16,
     #[serde(deserialize_with = "exactly")]
     mounting_deg: [f64; PLANES],
+    #[serde(deserialize_with = "exactly_if_there", default)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sensor_z_mm: Option<[f64; PLANES]>,
+    #[serde(deserialize_with = "exactly_if_there", default)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ring_z_mm: Option<[f64; PLANES]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pulses_per_turn: Option<u16>,
     levitation_signal: bool,
@@ -114,6 +120,8 @@ impl From<&Settings> for Tables {
                 zero_count: shortest(sensing.zero_count, 1.0),
                 full_scale: sensing.full_scale,
                 mounting_deg: sensing.mounting_angle.map(|it| shortest(it, DEGREE)),
+                sensor_z_mm: sensing.places.map(|it| it.sensors.map(in_mm)),
+                ring_z_mm: sensing.places.map(|it| it.rings.map(in_mm)),
                 pulses_per_turn: wiring.pulses_per_turn,
                 levitation_signal: wiring.levitation,
             },
@@ -177,6 +185,7 @@ impl Tables {
                     full_scale: sensors.full_scale,
                     mounting_angle: sensors.mounting_deg.map(|it| (DEGREE * it) as f32),
                     calibration,
+                    places: sensors.places()?,
                 },
                 tachometers: self.ball_bearing.as_ref().map(BallBearingTable::config),
                 detector: DetectorConfig {
@@ -196,7 +205,30 @@ impl Tables {
     }
 }
 
+/// In mm, of m.
+fn in_mm(place: f32) -> f64 {
+    shortest(place, MILLI)
+}
+
 impl SensorsTable {
+    /// Where sensors and rings are along the shaft, m: where one is told, so is the other.
+    fn places(&self) -> Result<Option<AxialPlaces>, Diagnostic> {
+        let in_metres = |places: [f64; PLANES]| places.map(|it| (MILLI * it) as f32);
+        let (missing, other) = match (self.sensor_z_mm, self.ring_z_mm) {
+            (None, None) => return Ok(None),
+            (Some(sensors), Some(rings)) => {
+                return Ok(Some(AxialPlaces {
+                    sensors: in_metres(sensors),
+                    rings: in_metres(rings),
+                }));
+            }
+            (None, _) => ("sensor_z_mm", "ring_z_mm"),
+            (_, None) => ("ring_z_mm", "sensor_z_mm"),
+        };
+        let rule = format!("{missing} must be given where {other} is");
+        Err(Diagnostic::new("sensors", missing, rule))
+    }
+
     /// A bit for each channel.
     fn fitted(&self) -> Result<u8, Diagnostic> {
         let rule = "channels must be \"ax\" and \"ay\", \"bx\" and \"by\", or all four, each once";

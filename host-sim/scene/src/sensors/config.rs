@@ -132,6 +132,7 @@ impl SensorsConfig {
             full_scale: self.full_scale(),
             mounting_angle: self.mounting_angle.map(|angle| angle as f32),
             calibration: self.calibration,
+            places: None,
         }
     }
 

@@ -17,12 +17,13 @@ use crate::detect::pending::Pending;
 use crate::detect::phase_machine::{Disturbance, Lifting, PhaseMachine, PhaseState};
 use crate::detect::possible::{Possible, PossibleTest};
 use crate::detect::release::{Release, ReleaseBank, Released};
+use crate::detect::ring_planes::RingPlanes;
 use crate::detect::signals::Signals;
 use crate::detect::slip::Slip;
 use crate::event::{EventKind, Moment, Motion, Notices, Plane};
 use crate::fault::SPEED;
 use crate::phase::Phase;
-use crate::sensing::{PLANES, PlanePositions, Reading, mean};
+use crate::sensing::{PLANES, PlanePositions, Reading, SensingConfig, mean};
 use crate::vector::{direction, less, square, sum};
 use touchdown_rotor::error::ConfigError;
 use touchdown_rotor::real::ln;
@@ -39,6 +40,7 @@ const RESTING_ANGLE: f32 = 0.1;
 pub struct Detector {
     config: DetectorConfig,
     resolution: f32,
+    ring_planes: RingPlanes,
     possible: PossibleTest,
     learning: Learning,
     orbiting: Orbiting,
@@ -78,15 +80,16 @@ pub struct DetectorState {
 }
 
 impl Detector {
-    /// Checks `config`; `resolution` is the displacement of one count, m.
-    pub fn try_new(config: &DetectorConfig, resolution: f32) -> Result<Self, ConfigError> {
+    /// Checks `config`, and where the sensors are.
+    pub fn try_new(config: &DetectorConfig, sensing: &SensingConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let rate = config.sample_rate;
         let tuning = &config.tuning;
         let threshold = -ln(tuning.false_alarm);
         Ok(Self {
             config: *config,
-            resolution,
+            resolution: sensing.resolution,
+            ring_planes: RingPlanes::try_new(sensing.places.as_ref())?,
             possible: PossibleTest::new(config),
             learning: Learning::new(tuning, rate),
             orbiting: Orbiting::new(config),
@@ -136,16 +139,18 @@ impl Detector {
         if state.rotor.phase <= Phase::Levitated {
             state.spin = signals.spin;
         }
-        let planes = self.possible(state, &reading.planes);
+        let seen = self.possible(state, &reading.planes);
+        let planes = self.ring_planes.positions(&seen);
         let measurement = self.measurement(state, &planes);
         match planes {
             [Some(a), Some(b)] if state.noise.is_known() => {
                 let floats = state.rotor.phase == Phase::Levitated;
-                let variance = state.noise.variance(1, self.resolution);
+                let variance =
+                    self.ring_planes.growth_apart * state.noise.variance(1, self.resolution);
                 self.ends.take(&mut state.ends, a, b, variance, floats);
                 writer.motion = state.ends.motion();
             }
-            _ if planes == reading.planes => state.ends.lose_sight(),
+            _ if seen == reading.planes => state.ends.lose_sight(),
             _ => {}
         }
         if state.ends.are_alone {
@@ -182,15 +187,16 @@ impl Detector {
         };
         state.noise.take(position, planes);
         let is_known = state.noise.is_known();
-        is_known.then(|| self.measured(state, position, planes))
+        let variance = state.noise.variance(planes, self.resolution);
+        is_known.then(|| self.measured(state, position, variance))
     }
 
-    /// The mean position, m, of so many planes.
-    fn measured(&self, state: &DetectorState, position: [f32; 2], planes: u8) -> Measurement {
+    /// A position, m, of this variance, m^2.
+    fn measured(&self, state: &DetectorState, position: [f32; 2], variance: f32) -> Measurement {
         Measurement {
             now: Moment::of_sample(state.sample.saturating_sub(1)),
             position,
-            variance: state.noise.variance(planes, self.resolution),
+            variance,
             spin: state.spin.unwrap_or(self.config.machine.spin),
         }
     }
@@ -224,7 +230,12 @@ impl Detector {
         state: &DetectorState,
         planes: &PlanePositions,
     ) -> [Option<Measurement>; PLANES] {
-        planes.map(|plane| plane.map(|position| self.measured(state, position, 1)))
+        let variance = state.noise.variance(1, self.resolution);
+        let of = |plane: Option<[f32; 2]>, growth: f32| {
+            plane.map(|position| self.measured(state, position, growth * variance))
+        };
+        let ([a, b], [of_a, of_b]) = (*planes, self.ring_planes.growth);
+        [of(a, of_a), of(b, of_b)]
     }
 
     /// The rotor as a whole.
@@ -654,6 +665,7 @@ mod tests {
     use crate::config::Tuning;
     use crate::detect::noise::white;
     use crate::detect::series::tests::MACHINE;
+    use crate::sensing::tests::CONFIG;
     use core::f32::consts::TAU;
 
     /// Of an orbit of 30 um, 450 um^2 on each axis, no more than runout of 8 um counts as noise on the wall.
@@ -664,7 +676,11 @@ mod tests {
             machine: MACHINE,
             tuning: Tuning::default(),
         };
-        let detector = Detector::try_new(&config, 0.5e-6).expect("valid");
+        let sensing = SensingConfig {
+            resolution: 0.5e-6,
+            ..CONFIG
+        };
+        let detector = Detector::try_new(&config, &sensing).expect("valid");
         let (mut state, mut seed) = (DetectorState::default(), 1);
         for k in 0..12_000_u16 {
             let (sin, cos) = libm::sincosf(TAU * 150.0 / 20_000.0 * f32::from(k));

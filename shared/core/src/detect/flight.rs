@@ -99,8 +99,8 @@ pub(crate) struct Airborne {
     touch: Option<OpenTouch>,
     /// When the last impact was.
     met: Option<Moment>,
-    /// Radius beyond which a wall that gives way is displaced and pushes, m: where it was first met, or is told, whichever is
-    /// farther out.
+    /// Radius beyond which a wall that gives way is displaced and pushes, m: where it was first met, and half the way from there
+    /// to where it is met nearer, as a date shows no place exactly; or where it is told, whichever is farther out.
     free: f32,
     /// Whether the rotor has been off it since the last impact.
     was_off: bool,
@@ -457,8 +457,13 @@ impl FlightTest {
         let noise = measurement.variance * flight.bank.threshold_scale;
         match touch.look(out, sqrt(noise), gone) {
             TouchStage::GivesWay => {
-                flight.gives = true;
                 let (_, met) = touch.place;
+                let met = if flight.gives {
+                    flight.free.min(0.5 * (flight.free + met))
+                } else {
+                    met - touch.slack
+                };
+                flight.gives = true;
                 (flight.free, flight.was_off) = (met.max(self.told.radius), false);
                 flight.wall.shrink(touch.slack);
                 let (at, noise) = (measurement.position, measurement.variance);
@@ -776,6 +781,38 @@ mod tests {
         };
         assert_eq!(impacts(0.09 * MACHINE.clearance), 0);
         assert!(impacts(0.3 * MACHINE.clearance) > 3);
+    }
+
+    /// A wall that is met where it is displaced is free where it was before; met nearer, half the way to there.
+    #[test]
+    fn a_wall_is_free_where_it_was_met_nearest() {
+        let test = test(20_000.0);
+        let free_after = |met: f32| {
+            let mut flight = Airborne {
+                gives: true,
+                free: 1.2 * MACHINE.clearance,
+                met: Some(Moment::of_sample(100)),
+                touch: Some(OpenTouch::new(([0.0, -1.0], met), 0.0)),
+                ..Airborne::default()
+            };
+            let mut samples = 101..110_u16;
+            while !flight.touch.as_ref().is_some_and(OpenTouch::gives) {
+                let sample = samples.next().expect("it gives way");
+                let out = met + 5e-6 * f32::from(sample - 100);
+                let measurement = Measurement {
+                    now: Moment::of_sample(sample.into()),
+                    position: [0.0, -out],
+                    variance: 1e-12,
+                    spin: 0.0,
+                };
+                test.follow_touch(&mut flight, &measurement);
+            }
+            flight.free / MACHINE.clearance
+        };
+        for (met, free) in [(1.3, 1.2), (1.1, 1.15), (0.6, 1.0)] {
+            let found = free_after(met * MACHINE.clearance);
+            assert!((found - free).abs() < 1e-3, "{met}: {found}");
+        }
     }
 
     /// A rotor that was off the wall after the foreseen end did not lie there since.

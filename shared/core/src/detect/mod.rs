@@ -3,6 +3,7 @@
 //! | file | says |
 //! |---|---|
 //! | `noise` | how large the sensors' white noise is, whatever the rotor does |
+//! | `ring_planes` | where the rotor is at the rings, of what is seen elsewhere |
 //! | `possible` | whether the rotor can be where a sample shows it |
 //! | `levitation` | where the rotor floats, and whether the monitor is armed |
 //! | `trend` | where it goes |
@@ -46,6 +47,7 @@ mod phase_machine;
 mod possible;
 mod release;
 mod retainer_wall;
+mod ring_planes;
 mod series;
 mod signals;
 mod slip;

@@ -73,6 +73,7 @@ impl Header {
             full_scale: self.full_scale,
             mounting_angle: self.mounting_angle,
             calibration: self.calibration,
+            places: None,
         }
     }
 
