@@ -102,7 +102,7 @@ pub struct Reading {
     pub planes: [Option<[f32; 2]>; PLANES],
     /// Bit i is set if fitted channel i delivered no usable value.
     pub unusable: u8,
-    /// How far the mean over the planes has moved because one is lost or back, m.
+    /// How far the mean over the planes, at the rings where both are seen, has moved because one is lost or back, m.
     pub moved: [f32; 2],
     /// What this sample showed to be wrong, by channel.
     pub found: [Option<Found>; CHANNELS],

@@ -480,6 +480,23 @@ fn a_channel_that_comes_back_is_used_again() {
 }
 
 #[test]
+fn a_plane_that_is_lost_of_a_tilted_rotor_is_no_fall() {
+    let two_plane = BUILT_IN.iter().find(|it| it.name == "two-plane");
+    let text = (two_plane.expect("built-in").text).replace("[two_plane]", "[two_plane]\nsensor_z_mm = [-50.0, 90.0]");
+    let scene = Scene::parse("two-plane", &text).expect("a valid scene");
+    assert!(scene.monitor_config().sensing.places.is_some());
+    for channel in 0..4 {
+        let gone = SensorFault {
+            end: 0.6,
+            ..for_good(channel, Failing::Open, 0.5)
+        };
+        let answer = watched(&scene, 1.0, &[gone], |_| [[0.0, 40e-6], [0.0, -40e-6]]);
+        let (faults, others) = notices(&answer);
+        assert_eq!((faults.len(), others), (1, 0), "{channel}: {:?}", answer.notices);
+    }
+}
+
+#[test]
 fn a_speed_that_is_no_number_is_counted_and_left_out() {
     let scene = rig(2, 1);
     let sensors = Sensors::try_new(&scene.sensors, RATE).expect("valid sensors");

@@ -101,7 +101,7 @@ impl Health {
                 REACH * fall / (rate * sensing.finest_resolution()),
                 sensing.full_scale,
             ),
-            pair: PlaneOffset::new(tolerance),
+            pair: PlaneOffset::new(tolerance, sensing.places.as_ref()),
             float: OrbitSense::new(threshold, LEAST_ORBIT * sensing.resolution, rate / every),
             lie: ContactCheck::new(
                 machine.clearance,

@@ -1,6 +1,6 @@
 //! Two planes of one rotor: the mean of both moves when one is lost or comes back, the rotor does not.
 
-use crate::sensing::PLANES;
+use crate::sensing::{AxialPlaces, PLANES};
 
 /// Samples that half the difference of the planes is learnt over. Chosen: eight times as long as a stuck
 /// channel goes unnoticed.
@@ -11,6 +11,8 @@ const MEMORY: f32 = 128.0;
 pub(crate) struct PlaneOffset {
     /// Half difference, m, beyond which the ends of a rotor that does not float are apart.
     tolerance: f32,
+    /// Where the mean of both is, in half differences from the middle towards plane A: that of the rings.
+    both: f32,
 }
 
 /// What is known of the two.
@@ -22,12 +24,17 @@ pub(crate) struct PlaneOffsetState {
 }
 
 impl PlaneOffset {
-    pub(crate) fn new(tolerance: f32) -> Self {
-        Self { tolerance }
+    /// `places` must be valid.
+    pub(crate) fn new(tolerance: f32, places: Option<&AxialPlaces>) -> Self {
+        let overhang = places.and_then(AxialPlaces::overhang);
+        Self {
+            tolerance,
+            both: overhang.map_or(0.0, |[a, b]| a - b),
+        }
     }
 
-    /// Takes the planes, m, both with values of their own where `own`; how far the mean of those that are seen
-    /// has moved because others are seen than before, m. Ends that are apart each go their own way: no move.
+    /// Takes the planes, m, both with values of their own where `own`; how far their mean, that of the rings where both are
+    /// seen, has moved because others are seen than before, m. Ends that are apart each go their own way: no move.
     pub(crate) fn take(
         &self,
         pairing: &mut PlaneOffsetState,
@@ -57,14 +64,19 @@ impl PlaneOffset {
         if before == seen || before == [false; PLANES] || (apart && !floats) {
             return [0.0; 2];
         }
-        let way = side(seen) - side(before);
+        let way = self.side(seen) - self.side(before);
         [way * x, way * y]
     }
-}
 
-/// Where the mean is, in half differences from the middle.
-fn side(seen: [bool; PLANES]) -> f32 {
-    f32::from(u8::from(seen[0])) - f32::from(u8::from(seen[1]))
+    /// Where the mean is, in half differences from the middle.
+    fn side(&self, seen: [bool; PLANES]) -> f32 {
+        match seen {
+            [true, true] => self.both,
+            [true, false] => 1.0,
+            [false, true] => -1.0,
+            [false, false] => 0.0,
+        }
+    }
 }
 
 impl PlaneOffsetState {
@@ -84,7 +96,18 @@ mod tests {
 
     #[test]
     fn the_mean_moves_by_what_it_is_told() {
-        let (pair, mut pairing) = (PlaneOffset::new(20e-6), PlaneOffsetState::default());
+        // Of the rings: at 3 of A and -1 of B.
+        let places = AxialPlaces {
+            sensors: [0.0, 1.0],
+            rings: [-2.0, 1.0],
+        };
+        told_how_far_it_moves(None, [0.5, 0.5]);
+        told_how_far_it_moves(Some(&places), [1.5, -0.5]);
+    }
+
+    fn told_how_far_it_moves(places: Option<&AxialPlaces>, weights: [f32; PLANES]) {
+        let pair = PlaneOffset::new(20e-6, places);
+        let mut pairing = PlaneOffsetState::default();
         let mut mean = None;
         for planes in [
             [Some(A), Some(B)],
@@ -94,8 +117,10 @@ mod tests {
             [None, Some(B)],
         ] {
             let moved = pair.take(&mut pairing, &planes, true, true);
-            let seen = || planes.iter().flatten();
-            let now = [0, 1].map(|k| seen().map(|it| it[k]).sum::<f32>() / seen().count() as f32);
+            let now = match planes {
+                [Some(a), Some(b)] => [0, 1].map(|k| weights[0] * a[k] + weights[1] * b[k]),
+                [one, other] => one.or(other).expect("one is seen"),
+            };
             for k in 0..2 {
                 let way = mean.map_or(0.0, |mean: [f32; 2]| now[k] - mean[k]);
                 assert!((moved[k] - way).abs() < 1e-12, "{planes:?}: {moved:?}");
@@ -106,7 +131,7 @@ mod tests {
 
     #[test]
     fn ends_that_are_apart_do_not_move_each_other() {
-        let (pair, mut pairing) = (PlaneOffset::new(5e-6), PlaneOffsetState::default());
+        let (pair, mut pairing) = (PlaneOffset::new(5e-6, None), PlaneOffsetState::default());
         pair.take(&mut pairing, &[Some(A), Some(B)], true, false);
         let moved = pair.take(&mut pairing, &[Some(A), None], true, false);
         assert_eq!(moved, [0.0; 2]);
