@@ -147,3 +147,40 @@ fn a_fall_while_the_speed_changes_is_declared_near_the_bound() {
         }
     }
 }
+
+/// Falls confirmed of a rotor that the magnets hold, in an orbit with the shaft that grows to the wall in so long (s) and goes
+/// round there.
+fn confirmed_of_a_rub(frequency: f64, growth: f64, seed: u64) -> usize {
+    let mut scene = Scene::load("rig").expect("built-in scene");
+    let rate = scene.run.sample_rate;
+    scene.rotor.spin = TAU * frequency;
+    let sensors = Sensors::try_new(&scene.sensors, rate).expect("sensors");
+    let mut state = sensors.start(seed);
+    let samples = (0..((FLOATS + growth + 0.1) * rate) as u64).map(|k| {
+        let time = k as f64 / rate;
+        let part = ((time - FLOATS) / growth).clamp(0.0, 1.0);
+        let (sin, cos) = (TAU * frequency * time + seed as f64).sin_cos();
+        let radius = part * scene.retainer.clearance;
+        let motion = Motion {
+            planes: [[radius * cos, radius * sin]; 2],
+            spin: scene.rotor.spin,
+            levitated: true,
+            bearing: None,
+        };
+        sensors.read(&mut state, &motion)
+    });
+    let answer = monitor_run::run(&scene.monitor_config(), samples).expect("valid");
+    let is_confirmed = |notice: &&Notice| matches!(notice, Notice::Confirmed { .. });
+    answer.notices.iter().filter(is_confirmed).count()
+}
+
+#[test]
+fn a_rub_of_a_rotor_that_is_held_is_no_fall() {
+    for frequency in [70.0, 90.0, 110.0] {
+        for seed in 0..20 {
+            let growth = 0.05 + 0.005 * seed as f64;
+            let confirmed = confirmed_of_a_rub(frequency, growth, seed);
+            assert_eq!(confirmed, 0, "{frequency} Hz, {growth} s, {seed}");
+        }
+    }
+}

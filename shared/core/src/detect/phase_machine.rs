@@ -22,6 +22,8 @@ const FALLS: f32 = 0.5;
 const WAVERING: f32 = 2.0;
 /// Faster than a controller puts a rotor down, m/s.
 const LANDING_SPEED: f32 = 0.01;
+/// Part of the shaft's angular velocity by which that of an orbit round its unbalance may differ where it meets the wall.
+const SYNCHRONOUS: f32 = 0.25;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -232,7 +234,7 @@ impl PhaseMachine {
     }
 
     /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
-    /// there from `centre` (m), where it would be.
+    /// there from `centre` (m), where it would be, or has met it in an orbit with the shaft.
     pub(crate) fn land(
         &self,
         phase_state: &mut PhaseState,
@@ -251,7 +253,7 @@ impl PhaseMachine {
         if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
             let fell = landing.impact > Some(self.landing_speed(open, measurement.now))
                 || self.fell(open, measurement.now, measurement.position, centre);
-            writer.resolve(pending, fell);
+            writer.resolve(pending, fell && !orbits(flight.track.velocity, measurement));
         }
         let Some(Landing { age, impact }) = landing else {
             return;
@@ -415,6 +417,14 @@ impl Disturbance {
     }
 }
 
+/// Whether a rotor at the wall goes round with its unbalance, as one does whose magnets hold: a fall goes outward.
+fn orbits([u, v]: [f32; 2], measurement: &Measurement) -> bool {
+    let ([x, y], radius) = direction(measurement.position);
+    let (outward, along) = (u * x + v * y, v * x - u * y);
+    let synchronous = measurement.spin * radius;
+    outward.abs() < along.abs() && (along - synchronous).abs() < SYNCHRONOUS * synchronous.abs()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -465,5 +475,31 @@ mod tests {
             machine.fell(&pending, now, [0.0, -part * way], [0.0; 2])
         };
         assert!(fell(0.6) && !fell(0.4));
+    }
+
+    /// At the wall at its bottom, with velocities outward and along, m/s, and a shaft that turns with 500 rad/s.
+    #[test]
+    fn what_goes_round_with_the_shaft_did_not_fall() {
+        let clearance = MACHINE.clearance;
+        let turning = 500.0 * clearance;
+        for (outward, along, spin, expected) in [
+            (0.02, turning, 500.0, true),
+            (0.02, 0.8 * turning, 500.0, true),
+            (0.02, -turning, -500.0, true),
+            (0.02, 0.7 * turning, 500.0, false),
+            (0.02, -turning, 500.0, false),
+            (1.1 * turning, turning, 500.0, false),
+            (0.07, 0.01, 50.0, false),
+            (0.07, 0.0, 0.0, false),
+        ] {
+            let measurement = Measurement {
+                now: Moment::default(),
+                position: [0.0, -clearance],
+                variance: 1e-12,
+                spin,
+            };
+            let found = orbits([along, -outward], &measurement);
+            assert_eq!(found, expected, "{outward} {along} {spin}");
+        }
     }
 }
