@@ -50,6 +50,21 @@ pub struct Impact {
     pub outward: [f64; 2],
 }
 
+impl Machine {
+    /// Whether magnets hold the rotor against all that disturbs it.
+    pub fn is_held(&self) -> bool {
+        let Some(Held {
+            most, orbit, shock, ..
+        }) = &self.held
+        else {
+            return false;
+        };
+        let [x, y] = shock.map_or([0.0; 2], |(.., acceleration)| acceleration);
+        let [u, v] = self.pull;
+        (x + u).hypot(y + v) + orbit[0] * self.spin * self.spin < *most
+    }
+}
+
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
     pub impacts: Vec<Impact>,
@@ -323,6 +338,14 @@ impl Rotor {
 }
 
 impl Rotor {
+    /// Whether it is in a contact that has not ended.
+    pub fn lies(&self) -> bool {
+        self.truth
+            .contacts
+            .last()
+            .is_some_and(|it| it[1].is_infinite())
+    }
+
     /// Whether it goes round so fast that samples do not show it.
     pub fn lies_fast(&self) -> bool {
         self.v[0].hypot(self.v[1]) > 300.0 * std::f64::consts::TAU * self.m.gap
