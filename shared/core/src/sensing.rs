@@ -53,6 +53,12 @@ impl AxialPlaces {
             .all(|it| OVERHANG.contains(it))
             .then_some(overhang)
     }
+
+    /// Where the middle between the rings is, from that between the sensors towards plane A, in half distances of the sensors.
+    pub(crate) fn ring_mean(&self) -> f32 {
+        let ([a, b], [ring_a, ring_b]) = (self.sensors, self.rings);
+        (a + b - ring_a - ring_b) / (b - a)
+    }
 }
 
 impl SensingConfig {

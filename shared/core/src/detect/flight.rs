@@ -783,6 +783,51 @@ mod tests {
         assert!(impacts(0.3 * MACHINE.clearance) > 3);
     }
 
+    /// It meets a spring with 50 mm/s after a fall, under its weight.
+    #[test]
+    fn what_meets_a_wall_that_gives_way_is_not_dated_before_it() {
+        let test = test(20_000.0);
+        for frequency in [100.0, 150.0, 200.0_f32] {
+            for seed in 1..200 {
+                let early = early_on_a_spring(&test, frequency, seed);
+                assert!(early < 0.1e-3, "{frequency} Hz, {seed}: {early}");
+            }
+        }
+    }
+
+    /// By how much the impact is dated too early, s.
+    fn early_on_a_spring(test: &FlightTest, frequency: f32, mut seed: u64) -> f32 {
+        const STEPS: u16 = 20;
+        let (falls, step) = (50e-3 / 9.81, test.period / f32::from(STEPS));
+        let samples_before = (falls / test.period) as u16;
+        let (mut out, mut speed) = (-0.5 * 50e-3 * falls, 0.0);
+        let mut flight = Airborne::default();
+        for k in 0..samples_before + 200 {
+            let measurement = Measurement {
+                now: Moment::of_sample(k.into()),
+                position: [
+                    7e-7 * white(&mut seed),
+                    7e-7 * white(&mut seed) - (MACHINE.clearance + out),
+                ],
+                variance: 5e-13,
+                spin: 0.0,
+            };
+            if k == 0 {
+                test.start(&mut flight, &measurement, None, 1.0);
+                (flight.gives, flight.free) = (true, MACHINE.clearance);
+            } else if let Some(landing) = test.take(&mut flight, &measurement, None) {
+                let since = f32::from(k) * test.period - falls;
+                return landing.age * test.period - since;
+            }
+            for _ in 0..STEPS {
+                let angular = TAU * frequency;
+                speed += step * (9.81 - (angular * angular * out).max(0.0));
+                out += step * speed;
+            }
+        }
+        panic!("nothing is told on {frequency} Hz");
+    }
+
     /// A wall that is met where it is displaced is free where it was before; met nearer, half the way to there.
     #[test]
     fn a_wall_is_free_where_it_was_met_nearest() {

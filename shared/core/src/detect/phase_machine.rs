@@ -247,13 +247,14 @@ impl PhaseMachine {
         let flight = &mut phase_state.flight;
         let open = (pending.as_ref()).map(|it| (it.since, centre));
         let landing = self.flight.take(flight, measurement, open);
-        if signals.levitated == Some(false) {
-            writer.resolve(pending, true);
-        }
-        if let (Some(landing), Some(open)) = (&landing, pending.as_ref()) {
-            let fell = landing.impact > Some(self.landing_speed(open, measurement.now))
-                || self.fell(open, measurement.now, measurement.position, centre);
-            writer.resolve(pending, fell && !orbits(flight.track.velocity, measurement));
+        let is_off = signals.levitated == Some(false);
+        if (is_off || landing.is_some())
+            && let Some(open) = pending
+        {
+            let impact = landing.as_ref().and_then(|it| it.impact);
+            let velocity = flight.track.velocity;
+            let fell = is_off || self.fell(open, impact, velocity, measurement, centre);
+            writer.resolve(pending, fell);
         }
         let Some(Landing { age, impact }) = landing else {
             return;
@@ -281,25 +282,22 @@ impl PhaseMachine {
         self.is_far(place, home) && is_nearer && rises
     }
 
-    /// Speed into the wall, m/s, that shows a fall: no controller puts a rotor down as fast, and a fall that begins upward
-    /// goes less far than gravity's way.
-    fn landing_speed(&self, pending: &Pending, now: Moment) -> f32 {
-        let time = now.since(pending.since) * self.period;
-        LANDING_SPEED.min(FALLS * self.machine.gravity * time)
-    }
-
-    /// Whether a rotor that went from `centre` to `at` (m) since the fall was declared went as fast as one
-    /// that falls.
-    pub(crate) fn fell(
+    /// Whether a rotor that has met the wall, with an `impact` (m/s) or without, fell there from where it would be, `centre` (m):
+    /// faster than a controller puts one down, or than gravity makes it, as a fall that begins upward goes less far; or as
+    /// far as one that falls. None that goes round with its shaft fell.
+    fn fell(
         &self,
         pending: &Pending,
-        now: Moment,
-        at: [f32; 2],
+        impact: Option<f32>,
+        velocity: [f32; 2],
+        measurement: &Measurement,
         centre: [f32; 2],
     ) -> bool {
-        let time = now.since(pending.since) * self.period;
-        let least = FALLS * 0.5 * self.machine.gravity * time * time;
-        square(at, centre) >= least * least
+        let time = measurement.now.since(pending.since) * self.period;
+        let speed = FALLS * self.machine.gravity * time;
+        let least = 0.5 * speed * time;
+        let is_far = square(measurement.position, centre) >= least * least;
+        (is_far || impact > Some(LANDING_SPEED.min(speed))) && !orbits(velocity, measurement)
     }
 
     /// In flight: whether it floats again: clear of the wall, and still, or off the wall for longer than any flight.
@@ -361,12 +359,13 @@ impl PhaseMachine {
         signals: &Signals,
         (disturbance, is_whole): (&Disturbance, bool),
     ) -> Findings {
+        let is_rigid = is_whole && !phase_state.flight.gives;
         let contact = &mut phase_state.contact;
         let (wall, pull) = self.flight.seen_in_contact(&mut phase_state.flight);
         let measurement = measurement.map(|it| disturbance.on_wall(it, contact));
         let measurement = measurement.as_ref();
         self.contact
-            .take(contact, wall, (pull, is_whole), measurement, signals)
+            .take(contact, wall, (pull, is_rigid), measurement, signals)
     }
 
     /// Tells what a sample in contact has shown, and goes on from there.
@@ -419,9 +418,10 @@ impl Disturbance {
 
 /// Whether a rotor at the wall goes round with its unbalance, as one does whose magnets hold: a fall goes outward.
 fn orbits([u, v]: [f32; 2], measurement: &Measurement) -> bool {
-    let ([x, y], radius) = direction(measurement.position);
+    let [x, y] = measurement.position;
+    // All of them times the radius.
     let (outward, along) = (u * x + v * y, v * x - u * y);
-    let synchronous = measurement.spin * radius;
+    let synchronous = measurement.spin * (x * x + y * y);
     outward.abs() < along.abs() && (along - synchronous).abs() < SYNCHRONOUS * synchronous.abs()
 }
 
@@ -471,8 +471,13 @@ mod tests {
         };
         let way = 0.5 * MACHINE.gravity * 0.005 * 0.005;
         let fell = |part: f32| {
-            let now = Moment::of_sample(1_100);
-            machine.fell(&pending, now, [0.0, -part * way], [0.0; 2])
+            let measurement = Measurement {
+                now: Moment::of_sample(1_100),
+                position: [0.0, -part * way],
+                variance: 1e-12,
+                spin: 0.0,
+            };
+            machine.fell(&pending, None, [0.0; 2], &measurement, [0.0; 2])
         };
         assert!(fell(0.6) && !fell(0.4));
     }
@@ -500,6 +505,49 @@ mod tests {
             };
             let found = orbits([along, -outward], &measurement);
             assert_eq!(found, expected, "{outward} {along} {spin}");
+        }
+    }
+
+    /// Turns done when a whirl of 100 turns a second against the spin is told.
+    fn turns_when_told(is_whole: bool, gives: bool) -> f32 {
+        let machine = machine();
+        let turns = |k: u16| -MACHINE.spin.signum() * 5e-3 * f32::from(k);
+        let measurement = |k: u16| {
+            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * turns(k));
+            Measurement {
+                now: Moment::of_sample(k.into()),
+                position: [MACHINE.clearance * sin, -MACHINE.clearance * cos],
+                variance: 1e-12,
+                spin: 0.0,
+            }
+        };
+        let mut phase_state = PhaseState::default();
+        machine.lie(&mut phase_state, &measurement(0), 0.0);
+        phase_state.flight.gives = gives;
+        let disturbance = Disturbance {
+            threshold_scale: 1.0,
+            variance: 1e-12,
+        };
+        let whirl = (1..2_000).find(|&k| {
+            let sample = Some(measurement(k));
+            let signals = Signals::default();
+            let of_it = (&disturbance, is_whole);
+            let found = machine.feel(&mut phase_state, sample.as_ref(), &signals, of_it);
+            let kinds = found.iter().flatten();
+            kinds
+                .map(|it| it.0)
+                .any(|kind| kind == EventKind::BackwardWhirl)
+        });
+        turns(whirl.expect("it is told")).abs()
+    }
+
+    #[test]
+    fn a_whirl_of_one_end_or_on_a_wall_that_gives_way_is_told_once_it_has_passed_the_highest_place()
+    {
+        assert!(turns_when_told(true, false) < 0.25);
+        for (is_whole, gives) in [(false, false), (true, true)] {
+            let turns = turns_when_told(is_whole, gives);
+            assert!((0.5..0.6).contains(&turns), "{is_whole} {gives}: {turns}");
         }
     }
 }

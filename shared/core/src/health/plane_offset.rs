@@ -26,10 +26,9 @@ pub(crate) struct PlaneOffsetState {
 impl PlaneOffset {
     /// `places` must be valid.
     pub(crate) fn new(tolerance: f32, places: Option<&AxialPlaces>) -> Self {
-        let overhang = places.and_then(AxialPlaces::overhang);
         Self {
             tolerance,
-            both: overhang.map_or(0.0, |[a, b]| a - b),
+            both: places.map_or(0.0, AxialPlaces::ring_mean),
         }
     }
 

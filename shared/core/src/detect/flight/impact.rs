@@ -68,6 +68,11 @@ impl FlightTest {
             normal_acceleration: pressing,
         };
         let mut age = stretch * jump.dated;
+        // It has not met the wall yet where it is inside of where a wall that gives way is free.
+        if flight.gives && radius < flight.free {
+            let inside = (flight.free - radius) / (normal_speed * self.period);
+            age = (age - inside).max(jump.dated);
+        }
         let noise = measurement.variance * flight.bank.threshold_scale;
         let mut least = self.min_detectable_speed(pressing, noise);
         let (mut launch_speed, mut foreseen) = (0.0, false);
