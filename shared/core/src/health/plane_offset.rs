@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn the_mean_moves_by_what_it_is_told() {
-        // Of the rings: at 3 of A and -1 of B.
+        // The middle between the rings is half a distance of the sensors beyond A.
         let places = AxialPlaces {
             sensors: [0.0, 1.0],
             rings: [-2.0, 1.0],
