@@ -599,7 +599,8 @@ fn drop_once(watch: &mut Watch, rng: &mut Rng, verbose: bool) -> Tally {
     }
     if c.drops {
         let s = &watch.state.severity.so_far;
-        let greatest = truth.impacts.iter().map(|i| i.speed).fold(0.0, f64::max);
+        let seen = truth.impacts.iter().filter(|it| it.time < end);
+        let greatest = seen.map(|it| it.speed).fold(0.0, f64::max);
         if greatest > 0.0 {
             t.severity.push(f64::from(s.impact_speed) / greatest);
         }
