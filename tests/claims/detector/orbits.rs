@@ -148,12 +148,12 @@ fn a_fall_while_the_speed_changes_is_declared_near_the_bound() {
     }
 }
 
-/// Falls confirmed of a rotor that the magnets hold, in an orbit with the shaft that grows to the wall in so long (s) and goes
-/// round there.
-fn confirmed_of_a_rub(frequency: f64, growth: f64, seed: u64) -> usize {
+/// Falls confirmed of a rotor that the magnets hold, in an orbit of this frequency (Hz) that grows to the wall in so long (s) and
+/// goes round there; the shaft turns `times` as fast.
+fn confirmed_of_a_rub(frequency: f64, times: f64, growth: f64, seed: u64) -> usize {
     let mut scene = Scene::load("rig").expect("built-in scene");
     let rate = scene.run.sample_rate;
-    scene.rotor.spin = TAU * frequency;
+    scene.rotor.spin = TAU * frequency * times;
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("sensors");
     let mut state = sensors.start(seed);
     let samples = (0..((FLOATS + growth + 0.1) * rate) as u64).map(|k| {
@@ -176,11 +176,19 @@ fn confirmed_of_a_rub(frequency: f64, growth: f64, seed: u64) -> usize {
 
 #[test]
 fn a_rub_of_a_rotor_that_is_held_is_no_fall() {
-    for frequency in [70.0, 90.0, 110.0] {
+    let orbits = [
+        (70.0, 1.0),
+        (90.0, 1.0),
+        (110.0, 1.0),
+        (70.0, 0.5),
+        (70.0, -1.0),
+        (90.0, 1.5),
+    ];
+    for (frequency, times) in orbits {
         for seed in 0..20 {
             let growth = 0.05 + 0.005 * seed as f64;
-            let confirmed = confirmed_of_a_rub(frequency, growth, seed);
-            assert_eq!(confirmed, 0, "{frequency} Hz, {growth} s, {seed}");
+            let confirmed = confirmed_of_a_rub(frequency, times, growth, seed);
+            assert_eq!(confirmed, 0, "{frequency} Hz, {times}, {growth} s, {seed}");
         }
     }
 }

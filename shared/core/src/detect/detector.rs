@@ -440,7 +440,8 @@ impl Detector {
         let fall = if is_unforeseen {
             FallVerdict::Certain
         } else if self.falls.judges(&state.blocks) {
-            (self.falls).judge(&state.blocks, pending, measurement.now, noise, orbits)
+            let (now, home) = (measurement.now, state.levitation.mean);
+            (self.falls).judge(&state.blocks, pending, now, home, (noise, orbits))
         } else {
             FallVerdict::Open
         };

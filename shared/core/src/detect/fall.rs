@@ -8,11 +8,11 @@
 use crate::config::DetectorConfig;
 use crate::detect::pending::{Pending, StraightWay};
 use crate::event::Moment;
-use crate::vector::{length, sum};
+use crate::vector::{length, less, sum};
 use touchdown_rotor::real::sqrt;
 
 /// Length of a block, about, s.
-const BLOCK: f32 = 0.25e-3;
+pub(crate) const BLOCK: f32 = 0.25e-3;
 /// Time over which blocks are kept, s. A fall since an onset is fitted to those of its last half where that is sharp, or else
 /// to all since then.
 const KEPT: f32 = 4e-3;
@@ -41,6 +41,10 @@ const FREE: [f32; 2] = [0.15, 3.0];
 const FREE_SPEED: f32 = 3.2e-3;
 /// Part of gravity that the error of what is compared with it must stay below.
 const SHARP: f32 = 0.2;
+/// Acceleration back to where it floated, m/s^2, that shows magnets: a free rotor has at most that of gravity. Three places, so many
+/// blocks apart, show it to 3 m/s^2 with noise of 0.7 um (mean of two planes).
+const PULLED: f32 = 20.0;
+const LEG: usize = 2;
 /// Part of the clearance beyond which a bounce may look like a fall, and how long it may after it, s.
 const NEAR: f32 = 0.67;
 const BOUNCES: f32 = 20e-3;
@@ -191,15 +195,16 @@ impl FallTest {
         blocks.samples == 1.min(self.stride - 1)
     }
 
-    /// How a declared fall stands; `variance` and `orbits` as above.
+    /// How a declared fall stands of a rotor that floated at `home` (m); `variance` and `orbits` as above.
     pub(crate) fn judge(
         &self,
         blocks: &Blocks,
         pending: &mut Pending,
         now: Moment,
-        variance: f32,
-        orbits: bool,
+        home: [f32; 2],
+        (variance, orbits): (f32, bool),
     ) -> FallVerdict {
+        pending.pulled = pending.pulled << 1 | u32::from(self.is_pulled(blocks, home));
         let late = f32::from(blocks.samples);
         let since = (now.since(pending.since) - late) * self.period;
         let passed = now.since(pending.declared) - late;
@@ -228,6 +233,18 @@ impl FallTest {
         } else {
             FallVerdict::Open
         }
+    }
+
+    /// Whether it is pulled back to `home`, m, harder than by gravity.
+    #[inline(never)]
+    fn is_pulled(&self, blocks: &Blocks, home: [f32; 2]) -> bool {
+        if blocks.filled <= 2 * LEG {
+            return false;
+        }
+        let [new, middle, old] = [0, LEG, 2 * LEG].map(|back| blocks.back(back, 0));
+        let ([x, y], [u, v]) = (less(middle, home), less(sum(new, old), sum(middle, middle)));
+        let leg = LEG as f32 * f32::from(self.stride) * self.period;
+        -(u * x + v * y) > PULLED * leg * leg * length([x, y])
     }
 
     /// Place, speed, acceleration and time tell the same fall.
@@ -363,6 +380,37 @@ mod tests {
             machine: MACHINE,
             tuning: Tuning::default(),
         })
+    }
+
+    /// Blocks of 20 ms, on `path` (m over s).
+    fn blocks(test: &FallTest, path: impl Fn(f32) -> [f32; 2]) -> Blocks {
+        let mut blocks = Blocks::default();
+        for k in 0..400_u16 {
+            test.take(&mut blocks, [path(f32::from(k) * test.period); 2]);
+        }
+        blocks
+    }
+
+    #[test]
+    fn magnets_pull_a_rotor_back_and_gravity_does_not() {
+        let test = test(20_000.0);
+        let is_pulled =
+            |path: &dyn Fn(f32) -> [f32; 2]| test.is_pulled(&blocks(&test, path), [20e-6, 0.0]);
+        for hz in [60.0, 200.0, 500.0, 1_000.0] {
+            let orbit = |time: f32| {
+                let (sin, cos) = libm::sincosf(core::f32::consts::TAU * hz * time);
+                [20e-6 + 250e-6 * cos, 250e-6 * sin]
+            };
+            assert!(is_pulled(&orbit), "{hz} Hz");
+        }
+        // Thrown upward, it comes back with all of gravity.
+        for speed in [0.0, 0.02, 0.2] {
+            let thrown = |time: f32| {
+                let time = time - 0.018;
+                [20e-6, 150e-6 + speed * time - 0.5 * 9.81 * time * time]
+            };
+            assert!(!is_pulled(&thrown), "{speed} m/s");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::config::{DetectorConfig, MachineConfig};
 use crate::detect::contact::{ContactTest, Findings, Touching};
 use crate::detect::estimate::{Estimate, Exposure, Place};
 use crate::detect::event_writer::EventWriter;
+use crate::detect::fall::BLOCK;
 use crate::detect::flight::{Airborne, FlightTest, Landing, UNKNOWN_SPEED};
 use crate::detect::lift_off::{LiftOff, Lifted};
 use crate::detect::measurement::Measurement;
@@ -22,8 +23,6 @@ const FALLS: f32 = 0.5;
 const WAVERING: f32 = 2.0;
 /// Faster than a controller puts a rotor down, m/s.
 const LANDING_SPEED: f32 = 0.01;
-/// Part of the shaft's angular velocity by which that of an orbit round its unbalance may differ where it meets the wall.
-const SYNCHRONOUS: f32 = 0.25;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -234,7 +233,7 @@ impl PhaseMachine {
     }
 
     /// In flight: what the sample shows of the wall. It confirms a fall, unless the rotor was put down
-    /// there from `centre` (m), where it would be, or has met it in an orbit with the shaft.
+    /// there from `centre` (m), where it would be, or was held by the magnets until then.
     pub(crate) fn land(
         &self,
         phase_state: &mut PhaseState,
@@ -251,9 +250,8 @@ impl PhaseMachine {
         if (is_off || landing.is_some())
             && let Some(open) = pending
         {
-            let impact = landing.as_ref().and_then(|it| it.impact);
-            let velocity = flight.track.velocity;
-            let fell = is_off || self.fell(open, impact, velocity, measurement, centre);
+            let (age, impact) = (landing.as_ref()).map_or((0.0, None), |it| (it.age, it.impact));
+            let fell = is_off || self.fell(open, age, impact, measurement, centre);
             writer.resolve(pending, fell);
         }
         let Some(Landing { age, impact }) = landing else {
@@ -282,14 +280,14 @@ impl PhaseMachine {
         self.is_far(place, home) && is_nearer && rises
     }
 
-    /// Whether a rotor that has met the wall, with an `impact` (m/s) or without, fell there from where it would be, `centre` (m):
-    /// faster than a controller puts one down, or than gravity makes it, as a fall that begins upward goes less far; or as
-    /// far as one that falls. None that goes round with its shaft fell.
+    /// Whether a rotor that met the wall so many samples ago, with an impact (m/s) or without, fell there from where it would be,
+    /// `centre` (m): faster than a controller puts one down, or than gravity makes it, as a fall that begins upward goes
+    /// less far; or as far as one that falls. None that the magnets held until then fell.
     fn fell(
         &self,
         pending: &Pending,
+        age: f32,
         impact: Option<f32>,
-        velocity: [f32; 2],
         measurement: &Measurement,
         centre: [f32; 2],
     ) -> bool {
@@ -297,7 +295,9 @@ impl PhaseMachine {
         let speed = FALLS * self.machine.gravity * time;
         let least = 0.5 * speed * time;
         let is_far = square(measurement.position, centre) >= least * least;
-        (is_far || impact > Some(LANDING_SPEED.min(speed))) && !orbits(velocity, measurement)
+        let fell = is_far || impact > Some(LANDING_SPEED.min(speed));
+        let blocks = 1.0 + age * self.period * (1.0 / BLOCK);
+        fell && !pending.was_held(blocks as u32)
     }
 
     /// In flight: whether it floats again: clear of the wall, and still, or off the wall for longer than any flight.
@@ -416,15 +416,6 @@ impl Disturbance {
     }
 }
 
-/// Whether a rotor at the wall goes round with its unbalance, as one does whose magnets hold: a fall goes outward.
-fn orbits([u, v]: [f32; 2], measurement: &Measurement) -> bool {
-    let [x, y] = measurement.position;
-    // All of them times the radius.
-    let (outward, along) = (u * x + v * y, v * x - u * y);
-    let synchronous = measurement.spin * (x * x + y * y);
-    outward.abs() < along.abs() && (along - synchronous).abs() < SYNCHRONOUS * synchronous.abs()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -477,35 +468,9 @@ mod tests {
                 variance: 1e-12,
                 spin: 0.0,
             };
-            machine.fell(&pending, None, [0.0; 2], &measurement, [0.0; 2])
+            machine.fell(&pending, 0.0, None, &measurement, [0.0; 2])
         };
         assert!(fell(0.6) && !fell(0.4));
-    }
-
-    /// At the wall at its bottom, with velocities outward and along, m/s, and a shaft that turns with 500 rad/s.
-    #[test]
-    fn what_goes_round_with_the_shaft_did_not_fall() {
-        let clearance = MACHINE.clearance;
-        let turning = 500.0 * clearance;
-        for (outward, along, spin, expected) in [
-            (0.02, turning, 500.0, true),
-            (0.02, 0.8 * turning, 500.0, true),
-            (0.02, -turning, -500.0, true),
-            (0.02, 0.7 * turning, 500.0, false),
-            (0.02, -turning, 500.0, false),
-            (1.1 * turning, turning, 500.0, false),
-            (0.07, 0.01, 50.0, false),
-            (0.07, 0.0, 0.0, false),
-        ] {
-            let measurement = Measurement {
-                now: Moment::default(),
-                position: [0.0, -clearance],
-                variance: 1e-12,
-                spin,
-            };
-            let found = orbits([along, -outward], &measurement);
-            assert_eq!(found, expected, "{outward} {along} {spin}");
-        }
     }
 
     /// Turns done when a whirl of 100 turns a second against the spin is told.
