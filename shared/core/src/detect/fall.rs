@@ -41,7 +41,7 @@ const FREE: [f32; 2] = [0.15, 3.0];
 const FREE_SPEED: f32 = 3.2e-3;
 /// Part of gravity that the error of what is compared with it must stay below.
 const SHARP: f32 = 0.2;
-/// Acceleration back to where it floated, m/s^2, that shows magnets: a free rotor has at most that of gravity. Three places, so many
+/// Acceleration back to where it floated, m/s^2, that shows magnets: a free rotor's mass centre has at most gravity's. Three places, so many
 /// blocks apart, show it to 3 m/s^2 with noise of 0.7 um (mean of two planes).
 const PULLED: f32 = 20.0;
 const LEG: usize = 2;
