@@ -1,6 +1,6 @@
 //! On the wall: slides or rolls, swings, whirls, rests, lifts off.
 
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::TAU;
 
 use crate::config::{DetectorConfig, MachineConfig, NEAREST_WALL};
 use crate::detect::estimate::Place;
@@ -318,8 +318,8 @@ impl ContactTest {
             SWINGS
         };
         let has_turned = swing.turned.abs() >= TAU;
-        // The other end of a rotor that tilts, or a wall that gives way, moves it too: it has to have passed the highest place.
-        let is_bound = (is_rigid || swing.turned.abs() >= PI) && self.goes_round(state, pull, slip);
+        // The other end of a rotor that tilts, or a wall that gives way, moves it too: there the energy foresees nothing.
+        let is_bound = is_rigid && self.goes_round(state, pull, slip);
         let (found, age) = if has_turned || is_bound {
             let way = if has_turned { swing.turned } else { swing.rate };
             let with_spin = way * surface >= 0.0;

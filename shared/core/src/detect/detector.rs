@@ -376,7 +376,7 @@ impl Detector {
         let residual = (self.orbiting).take(&mut state.orbit, position, (variance, noise), floats);
         if residual.first {
             state.release.forget();
-            state.blocks.forget();
+            state.blocks = Blocks::default();
             state.hold = self.hold_samples;
         }
         let released = floats
@@ -470,7 +470,7 @@ impl Detector {
         state.listener = NoiseFloor::default();
         state.release.forget();
         state.orbit.forget();
-        state.blocks.forget();
+        state.blocks = Blocks::default();
         state.ends.forget();
     }
 
@@ -575,7 +575,7 @@ impl DetectorState {
     fn shift(&mut self, way: [f32; 2]) {
         self.levitation.shift(way);
         self.orbit.shift(way);
-        self.blocks.forget();
+        self.blocks = Blocks::default();
         if let Some(origin) = &mut self.origin {
             *origin = sum(*origin, way);
         }

@@ -20,11 +20,9 @@ const KEPT: f32 = 4e-3;
 const FEWEST: f32 = 12.0;
 const BLOCKS: usize = 24;
 
-/// Least time since the onset, and speed as a time of fall, s: a loop of 60 Hz and more has lost half of the
-/// acceleration by then. A longer fit has its middle then where that of the short one would be.
-const FALLEN: [f32; 2] = [2.5e-3, 2.25e-3];
-/// Least way, m: that of the time.
-const WAY: f32 = 30e-6;
+/// Least time since the onset, s: a loop of 60 Hz and more has lost half of the acceleration by then. A longer fit has its
+/// middle then where that of the short one would be.
+const FALLEN: f32 = 2.5e-3;
 /// Most that the acceleration may differ from gravity since an onset, as a part of it, beside these standard deviations.
 const UNLIKE: [f32; 2] = [0.3, 3.0];
 /// Likewise the change of the acceleration over half of the time.
@@ -32,8 +30,6 @@ const CHANGE: [f32; 2] = [0.1, 2.5];
 /// Part by which way and time may differ from those of the speed; standard deviations of the way.
 const APART: f32 = 0.25;
 const WAY_SIGMA: f32 = 5.0;
-/// Tangent of the angle between speed and gravity.
-const ASIDE: f32 = 0.3;
 /// Without an onset: most that the acceleration may differ from gravity, and change, as parts of it, beside these
 /// standard deviations.
 const FREE: [f32; 2] = [0.15, 3.0];
@@ -45,11 +41,6 @@ const SHARP: f32 = 0.2;
 /// blocks apart, show it to 3 m/s^2 with noise of 0.7 um (mean of two planes).
 const PULLED: f32 = 20.0;
 const LEG: usize = 2;
-/// Part of the clearance beyond which a bounce may look like a fall, and how long it may after it, s.
-const NEAR: f32 = 0.67;
-const BOUNCES: f32 = 20e-3;
-/// Part of gravity by which an acceleration is unlike it, beside three standard deviations.
-const OTHER: f32 = 0.4;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -59,9 +50,6 @@ pub(crate) struct FallTest {
     /// Samples of a block, and half of the blocks that are kept.
     stride: u16,
     half: u16,
-    /// Square of the distance beyond which a bounce may look like a fall, m^2, and samples that it may.
-    near: f32,
-    bounces: u32,
 }
 
 /// The last blocks: means of the position as it is, and without the orbit.
@@ -73,7 +61,6 @@ pub(crate) struct Blocks {
     sum: [[f32; 2]; 2],
     samples: u16,
     taken: u16,
-    since_wall: u32,
 }
 
 /// How a declared fall stands.
@@ -104,17 +91,14 @@ struct Cubic {
 
 impl FallTest {
     pub(crate) fn new(config: &DetectorConfig) -> Self {
-        let (rate, machine) = (config.sample_rate, &config.machine);
-        let near = NEAR * machine.clearance;
+        let rate = config.sample_rate;
         let stride = (BLOCK * rate + 0.5).max(1.0) as u16;
         let blocks = (KEPT * rate / f32::from(stride)).clamp(FEWEST, BLOCKS as f32);
         Self {
             period: 1.0 / rate,
-            gravity: machine.gravity,
+            gravity: config.machine.gravity,
             stride,
             half: (0.5 * blocks + 0.5) as u16,
-            near: near * near,
-            bounces: (BOUNCES * rate) as u32,
         }
     }
 
@@ -125,6 +109,11 @@ impl FallTest {
 
     fn half(&self) -> usize {
         usize::from(self.half)
+    }
+
+    /// Samples from the middle of the last block to its end.
+    fn behind(&self) -> f32 {
+        0.5 * (f32::from(self.stride) - 1.0)
     }
 
     /// Takes a position (m), as it is and without the orbit; true where a block is full.
@@ -138,7 +127,6 @@ impl FallTest {
 
     /// To the next sample, with a position or without; true where a block with one is full.
     pub(crate) fn advance(&self, blocks: &mut Blocks) -> bool {
-        blocks.since_wall = blocks.since_wall.saturating_add(1);
         blocks.samples += 1;
         if blocks.samples < self.stride {
             return false;
@@ -147,10 +135,6 @@ impl FallTest {
         if is_full {
             let scale = 1.0 / f32::from(blocks.taken);
             let means = blocks.sum.map(|sum| sum.map(|it| it * scale));
-            let [[x, y], _] = means;
-            if x * x + y * y > self.near {
-                blocks.since_wall = 0;
-            }
             if let Some(place) = blocks.means.get_mut(blocks.next) {
                 *place = means;
             }
@@ -168,7 +152,7 @@ impl FallTest {
     /// After a full block, of positions with this variance on each axis (m^2), of a rotor that `orbits` or not: a fall that
     /// nothing declared; samples since its onset.
     pub(crate) fn unforeseen(&self, blocks: &Blocks, variance: f32, orbits: bool) -> Option<f32> {
-        if blocks.filled < self.all() || blocks.since_wall < self.bounces || self.gravity == 0.0 {
+        if blocks.filled < self.all() || self.gravity == 0.0 {
             return None;
         }
         (usize::from(!orbits)..2).find_map(|part| {
@@ -184,9 +168,8 @@ impl FallTest {
             let falls = fit.change_error < SHARP * g
                 && fit.is_like(g, part * g + sigmas * fit.error)
                 && length(fit.change) < part * g + sigmas * fit.change_error
-                && -fit.speed[1] > FREE_SPEED * g
-                && fit.speed[0].abs() < -ASIDE * fit.speed[1];
-            falls.then(|| -fit.speed[1] / (g * self.period))
+                && -fit.speed[1] > FREE_SPEED * g;
+            falls.then(|| -fit.speed[1] / (g * self.period) + self.behind())
         })
     }
 
@@ -223,8 +206,7 @@ impl FallTest {
                 return FallVerdict::Certain;
             }
             let ([x, y], [u, v]) = (fit.place, fit.speed);
-            let falls = fit.is_like(self.gravity, OTHER * self.gravity + 3.0 * fit.error);
-            comes_back &= u * x + v * y <= 0.0 && !(falls && self.gravity > 0.0);
+            comes_back &= u * x + v * y <= 0.0;
         }
         pending.back = if comes_back { pending.back + 1 } else { 0 };
         // One that left an orbit may seem to come back for half as long.
@@ -255,13 +237,10 @@ impl FallTest {
         let [part, sigmas] = UNLIKE;
         let off = [fit.place[0], fit.place[1] + way];
         g > 0.0
-            && since >= FALLEN[0] + 0.5 * fit.longer
-            && fallen >= FALLEN[1]
-            && length(fit.place) >= WAY
+            && since >= FALLEN + 0.5 * fit.longer
             && fit.error < SHARP * g
             && fit.is_like(g, part * g + sigmas * fit.error)
             && length(off) < APART * way + WAY_SIGMA * fit.place_error
-            && fit.speed[0].abs() < -ASIDE * fit.speed[1]
             && (fallen - since).abs() < APART * since + BLOCK
     }
 
@@ -302,10 +281,8 @@ impl FallTest {
         let by_third = 2_800.0 / (n * (n2 - 1.0) * (n2 - 4.0) * (n2 - 9.0));
         let span = stride * self.period;
         let (p, square_span) = (end * end - square, span * span);
-        // The last block's middle lies half a block back.
-        let half = 0.5 * (stride - 1.0);
         let (path, passed) =
-            (path.map(|(path, passed)| (*path, passed - half))).unwrap_or_default();
+            (path.map(|(path, passed)| (*path, passed - self.behind()))).unwrap_or_default();
         let mut fit = Cubic::default();
         for axis in 0..2 {
             let (b, c, d) = (
@@ -357,15 +334,6 @@ impl Blocks {
         let it = parts.and_then(|it| it.get(part));
         it.copied().unwrap_or_default()
     }
-
-    /// What is measured has moved: begins anew.
-    pub(crate) fn forget(&mut self) {
-        let since_wall = self.since_wall;
-        *self = Self {
-            since_wall,
-            ..Self::default()
-        };
-    }
 }
 
 #[cfg(test)]
@@ -411,6 +379,20 @@ mod tests {
             };
             assert!(!is_pulled(&thrown), "{speed} m/s");
         }
+    }
+
+    #[test]
+    fn a_fall_without_an_onset_is_as_fast_as_one_of_3_ms() {
+        let test = test(20_000.0);
+        // All of gravity acts, since it was thrown upward.
+        let found = |fallen: f32| {
+            let since = |time: f32| time - 0.02 + fallen;
+            let thrown = |time: f32| [0.0, -0.5 * 9.81 * since(time) * since(time)];
+            test.unforeseen(&blocks(&test, thrown), 1e-14, false)
+        };
+        assert_eq!(found(2.9e-3), None);
+        let age = found(3.5e-3).unwrap();
+        assert!((age - 69.0).abs() < 0.1, "{age}");
     }
 
     #[test]
