@@ -41,6 +41,8 @@ const SHARP: f32 = 0.2;
 /// blocks apart, show it to 3 m/s^2 with noise of 0.7 um (mean of two planes).
 const PULLED: f32 = 20.0;
 const LEG: usize = 2;
+/// Part of gravity by which an acceleration is unlike it, beside three standard deviations.
+const OTHER: f32 = 0.4;
 
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -206,7 +208,8 @@ impl FallTest {
                 return FallVerdict::Certain;
             }
             let ([x, y], [u, v]) = (fit.place, fit.speed);
-            comes_back &= u * x + v * y <= 0.0;
+            let falls = fit.is_like(self.gravity, OTHER * self.gravity + 3.0 * fit.error);
+            comes_back &= u * x + v * y <= 0.0 && !(falls && self.gravity > 0.0);
         }
         pending.back = if comes_back { pending.back + 1 } else { 0 };
         // One that left an orbit may seem to come back for half as long.
