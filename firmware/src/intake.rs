@@ -1,18 +1,23 @@
 //! What becomes of a sample as it comes, above everything else: the guard sees it, and it waits for its tick in a ring.
 //!
+//! Some conversions make a sample: the guard sees each conversion, the tick each sample.
+//!
 //! A tick that takes long makes those behind it late. Only a full ring loses samples, and their numbers tell which.
 
+use core::mem;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use touchdown_core::guard::{Guard, GuardState};
 use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::oversampling::{Oversampling, OversamplingState};
+use touchdown_core::sample::Sample;
 use touchdown_core::sensing::Sensing;
 use touchdown_protocol::controller::Outputs;
 use touchdown_protocol::wire::Incoming;
 use touchdown_rotor::error::ConfigError;
 
-/// Samples that can wait, and one: 0.75 ms at 20 kHz.
+/// Samples that can wait, and one: 1.5 ms at 10 kHz.
 pub const RING: usize = 16;
 
 /// What came and its sample's number, from 0, modulo 2^32; those that were lost have numbers too.
@@ -33,23 +38,24 @@ impl Ring {
         }
     }
 
-    /// Its two ends; the monitor of `config` must be valid.
+    /// Its two ends, where conversions become samples by `oversampling`; the monitor of `config` must be valid.
     pub fn split<'m>(
         &'m mut self,
         config: &MonitorConfig,
+        oversampling: Oversampling,
     ) -> Result<(Intake<'m>, Waiting<'m>), ConfigError> {
         let (samples, waiting) = self.waiting.split();
         let gate = &self.gate;
+        // The guard counts conversions.
+        let mut detector = config.detector;
+        detector.sample_rate *= f32::from(oversampling.conversions());
         let intake = Intake {
             sensing: Sensing::try_new(&config.sensing)?,
-            guard: Guard::try_new(
-                &config.guard,
-                &config.detector,
-                config.fitted,
-                config.commissioned,
-            )?,
+            guard: Guard::try_new(&config.guard, &detector, config.fitted, config.commissioned)?,
             state: GuardState::default(),
-            next: 0,
+            oversampling,
+            sample: OversamplingState::default(),
+            clear: false,
             samples,
             gate,
         };
@@ -62,26 +68,42 @@ pub struct Intake<'m> {
     sensing: Sensing,
     guard: Guard,
     state: GuardState,
-    /// Number of the next sample.
-    next: u32,
+    oversampling: Oversampling,
+    sample: OversamplingState,
+    /// Whether an order to clear came with a conversion of the sample.
+    clear: bool,
     samples: Producer<'m, Numbered>,
     gate: &'m TripGate,
 }
 
 impl Intake<'_> {
-    /// Takes what came, before which the converter lost so many. Whether the outputs must be safe now: the guard trips,
+    /// Takes a conversion, before which so many were lost. Whether the outputs must be safe now: the guard trips,
     /// and they are not.
     #[inline]
     #[must_use]
     pub fn take(&mut self, arrival: Incoming, lost: u32) -> bool {
-        let number = self.next.wrapping_add(lost);
-        self.next = number.wrapping_add(1);
         let places = self.sensing.planes(&arrival.sample);
         let levitated = arrival.sample.levitated;
         self.guard.update(&mut self.state, places, levitated);
+        self.clear |= arrival.clear;
+        let whole = (self.oversampling).take(&mut self.sample, &arrival.sample, lost);
+        let number = self.sample.number;
         // Where there is no room it is lost, and the number of the next that has room tells it. The length is looked at so
         // that the compiler knows it is not 0, by which the queue divides.
-        if self.samples.capacity() < RING {
+        if let Some((counts, valid)) = whole
+            && self.samples.capacity() < RING
+        {
+            let sample = Sample {
+                counts,
+                valid,
+                ..arrival.sample
+            };
+            let clear = mem::take(&mut self.clear);
+            let arrival = Incoming {
+                sample,
+                clear,
+                ..arrival
+            };
             let _ = self.samples.enqueue((arrival, number));
         }
         let verdict = self.state.verdict;

@@ -7,6 +7,7 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::oversampling::Oversampling;
 use touchdown_protocol::config_block::{self, Settings};
 use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
@@ -40,19 +41,19 @@ impl Memory {
         }
     }
 
-    /// What takes a sample as it comes, the task that does the rest, and the main loop below it; `found` is what was wrong
-    /// at power-on, which was number `boot`.
+    /// What takes a conversion as it comes, the task that takes the samples, and the main loop below it; `found` is what was
+    /// wrong at power-on, which was number `boot`.
     pub fn fill<B: Board>(
         &'static mut self,
         settings: &Settings,
-        found: Faults,
-        boot: u32,
+        oversampling: Oversampling,
+        (found, boot): (Faults, u32),
         board: B,
     ) -> Result<(Intake<'static>, TickTask<'static, B>, MainLoop), ConfigError> {
         let app = application(&mut self.app, &settings.monitor, found)?;
         let (place, samples) = (&mut self.recorder, &mut self.samples);
         let recorder = recorder(place, samples, settings, board.config(), boot);
-        let (intake, waiting) = self.ring.split(&settings.monitor)?;
+        let (intake, waiting) = self.ring.split(&settings.monitor, oversampling)?;
         let tick = TickTask::new(app, recorder, board, &mut self.outbox, waiting);
         let forecast = forecast_task(&settings.monitor)?;
         Ok((intake, tick, MainLoop::new(settings, forecast)))

@@ -10,12 +10,12 @@ use crate::board::Board;
 use crate::intake::{RING, Waiting};
 use crate::recorder::Recorder;
 
-/// Missed samples in a row whose time goes on in the monitor: 1 ms at 20 kHz, for which it trips. Those beyond are told
-/// and not made up for.
+/// Missed samples in a row whose time goes on in the monitor: 1 ms at 20 kHz, 2 ms at 10 kHz. It trips after 1 ms. Those beyond are
+/// told and not made up for.
 const MOST_MISSED: u32 = 20;
 /// Samples in a row, after which the others wait for a turn of the main loop: an order over the link is heard also while ticks
 /// take all the time.
-const IN_A_ROW: u32 = 64;
+const IN_A_ROW: u32 = 32;
 /// Sample periods that they wait at most. A main loop that hangs stops no tick.
 const LONGEST_WAIT: u32 = RING as u32 / 2;
 /// Notices on their way to log and link. If it is full they are lost and counted; events are numbered, so a gap shows.

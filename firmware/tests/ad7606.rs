@@ -12,7 +12,7 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock as Spi, Transaction};
 use touchdown_firmware::ad7606::{Ad7606, FASTEST_CLOCK_HZ, LONGEST_CONVERSION_NS, RESET_NS};
-use touchdown_firmware::board::SAMPLE_RATE_HZ;
+use touchdown_firmware::board::CONVERSION_RATE_HZ;
 
 fn levels(states: &[State]) -> Vec<Level> {
     states.iter().map(|it| Level::set(*it)).collect()
@@ -159,5 +159,5 @@ fn the_driver_keeps_the_times_of_its_sources() {
     let (reads, longest) = samples(u32::MAX);
     assert_eq!(reads, 0);
     let reading = 64 * 1_000_000_000_u64 / u64::from(FASTEST_CLOCK_HZ);
-    assert!(u64::from(longest) + reading < 1_000_000_000 / u64::from(SAMPLE_RATE_HZ) / 5);
+    assert!(u64::from(longest) + reading < 1_000_000_000 / u64::from(CONVERSION_RATE_HZ) / 5);
 }

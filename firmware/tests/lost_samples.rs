@@ -3,17 +3,19 @@
 mod common;
 
 use common::desk::Desk;
-use common::falling::{DURATION, RATE, sample};
+use common::falling::{DURATION, sample};
 use common::rig::{BLOCK, BOOT};
 use proptest::prelude::*;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::{default_config, default_settings};
+use touchdown_firmware::board::{SAMPLE_RATE_HZ, default_config, default_settings};
 use touchdown_firmware::recorder::{Memory, Recorder};
 use touchdown_firmware::tick::tick;
 use touchdown_protocol::config_block;
 use touchdown_protocol::controller::{Fault, Faults};
 use touchdown_protocol::log::waveform::Counts;
+
+const RATE: f64 = SAMPLE_RATE_HZ as f64;
 
 struct Outcome {
     /// Onsets of the fall and of the first three impacts, samples.
@@ -38,7 +40,7 @@ fn drop(lost: impl Fn(usize) -> bool) -> Outcome {
     let (mut events, mut gone, mut seed) = (vec![], 0, 1);
     let all = (DURATION * RATE) as usize;
     for number in 0..all {
-        let sample = sample(number, &mut seed);
+        let sample = sample(number as f64 / RATE, &mut seed);
         if lost(number) && number + 1 < all {
             gone += 1;
             continue;

@@ -4,8 +4,8 @@
 mod common;
 
 use common::chip::random;
-use common::falling::{DURATION, RATE, RELEASE, sample};
-use common::machine::{Machine, PERIOD, started};
+use common::falling::{DURATION, RELEASE, sample};
+use common::machine::{CONVERSION, Machine, PERIOD, started};
 use proptest::prelude::*;
 use touchdown_core::event::{Act, Event, EventKind};
 use touchdown_core::sample::Sample;
@@ -15,11 +15,16 @@ use touchdown_protocol::controller::{Fault, Mode};
 use touchdown_protocol::link::{Decoder, Mac, Nonce, Reply, Request, encode, mac};
 
 /// Of a typical tick.
-const TICK: u64 = 35_000;
+const TICK: u64 = 42_000;
 
-fn falling() -> impl FnMut(u64) -> Sample {
+fn falling() -> impl FnMut(f64) -> Sample {
     let mut seed = 1;
-    move |number| sample(number as usize, &mut seed)
+    move |time| sample(time, &mut seed)
+}
+
+/// Of the sample at a time, s.
+fn number(time: f64) -> u64 {
+    (time * 1e9) as u64 / PERIOD
 }
 
 fn run_to(machine: &mut Machine, main_loop: &mut MainLoop, seconds: f64) {
@@ -33,7 +38,7 @@ fn nothing_is_lost_until_the_ring_is_full() {
     // A tick of so many periods, once; the ring has room for one less than RING.
     let mut told = vec![];
     for (periods, lost) in [(0, 0), (8, 0), (RING as u64 - 1, 0), (RING as u64 + 3, 4)] {
-        let long = ((RELEASE + 4e-3) * RATE) as u64;
+        let long = number(RELEASE + 4e-3);
         let burst = move |taken| {
             if taken == long {
                 periods * PERIOD
@@ -102,18 +107,17 @@ proptest! {
 /// Whatever the tick does: the guard on top takes `run` back, and the tick says why when it gets there.
 #[test]
 fn the_guard_on_top_trips_while_a_tick_takes_long() {
-    let period_s = 1.0 / RATE;
     let mut tripped = vec![];
     for long in [0, 12 * PERIOD] {
         // 5.2 ms after the release the rotor is 0.13 mm down; danger is 0.2 mm, after 6.4 ms.
-        let late = ((RELEASE + 6.3e-3) / period_s) as u64;
+        let late = number(RELEASE + 6.3e-3);
         let cost = move |taken| if taken == late { TICK + long } else { TICK };
         // No detector trips it before: what it falls is a slow drift.
-        let drift = move |number: u64| {
-            let mut seed = number + 1;
-            let still = sample(0, &mut seed);
-            let time = (number as f64 * period_s - RELEASE).max(0.0);
-            let count = (time / 6.4e-3).min(1.4) * 0.67 * 0.3e-3 * 4_096.0 / 2_000e-6;
+        let drift = move |time: f64| {
+            let mut seed = (time * 1e9) as u64 / CONVERSION;
+            let still = sample(0.0, &mut seed);
+            let count =
+                ((time - RELEASE).max(0.0) / 6.4e-3).min(1.4) * 0.67 * 0.3e-3 * 4_096.0 / 2_000e-6;
             let mut counts = still.counts;
             counts[0] += count as u16;
             counts[2] += count as u16;

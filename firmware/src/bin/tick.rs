@@ -108,7 +108,7 @@ impl Platform for BarePlatform {
 
     fn abilities(&self) -> Abilities {
         Abilities {
-            sample_rate: f32::from(read()),
+            conversion_rate: f32::from(read()),
             cycles: f32::from(read()),
             full_scale: 4_095,
             tachometers: false,

@@ -13,6 +13,7 @@ use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::oversampling::Oversampling;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::Shown;
@@ -37,9 +38,9 @@ pub trait Board {
 /// What a board can do, which a configuration has to fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Abilities {
-    /// Hz.
-    pub sample_rate: f32,
-    /// Of the core in a sample period; any number where samples wait for it.
+    /// Of the converter, Hz.
+    pub conversion_rate: f32,
+    /// Of the core between two conversions; any number where samples wait for it.
     pub cycles: f32,
     /// Highest count.
     pub full_scale: u16,
@@ -50,21 +51,29 @@ pub struct Abilities {
 impl Abilities {
     /// The first parameter of `config` that does not fit.
     pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
-        if config.detector.sample_rate != self.sample_rate {
+        let instants = &config.detector.tuning;
+        let conversions = self.oversampling(config).map(|it| it.conversions());
+        if conversions.is_none_or(|it| f32::from(it) * self.cycles < cost::BUSIEST) {
             Some("sample_rate")
         } else if config.sensing.full_scale != self.full_scale {
             Some("full_scale")
         } else if config.tachometers.is_some() && !self.tachometers {
             Some("marks")
-        } else if cost::floating(&config.detector) > self.cycles {
+        } else if self.cycles.is_infinite() {
+            None
+        } else if instants.release_instants > cost::MOST_INSTANTS {
             Some("release_instants")
-        } else if self.cycles.is_finite()
-            && config.detector.tuning.impact_instants > cost::IMPACT_INSTANTS
-        {
+        } else if instants.impact_instants > cost::MOST_INSTANTS {
             Some("impact_instants")
         } else {
             None
         }
+    }
+
+    /// How its conversions become the samples that `config` asks for.
+    pub fn oversampling(&self, config: &MonitorConfig) -> Option<Oversampling> {
+        let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
+        Oversampling::new(self.conversion_rate, rate, full_scale)
     }
 }
 
@@ -73,8 +82,10 @@ pub const BLOCK_SAMPLES: usize = 256;
 /// Episodes of its drop log.
 pub const EMULATED_SLOTS: usize = 8;
 
-/// Samples per second of the silicon image, Hz.
-pub const SAMPLE_RATE_HZ: u32 = 20_000;
+/// Conversions per second of the silicon images, Hz.
+pub const CONVERSION_RATE_HZ: u32 = 20_000;
+/// Samples per second where nothing else is configured, Hz: each is the mean of two conversions.
+pub const SAMPLE_RATE_HZ: u32 = 10_000;
 
 /// Speed of the link, baud.
 #[cfg(target_os = "none")]

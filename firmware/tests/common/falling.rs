@@ -1,11 +1,9 @@
 //! A rotor that floats, is let go and bounces, in closed form.
 
 use touchdown_core::sample::{Sample, TACHOMETERS};
-use touchdown_firmware::board::SAMPLE_RATE_HZ;
 
 use super::chip::random;
 
-pub const RATE: f64 = SAMPLE_RATE_HZ as f64;
 const CLEARANCE: f64 = 0.3e-3;
 const GRAVITY: f64 = 9.81;
 const RESTITUTION: f64 = 0.8;
@@ -32,9 +30,9 @@ fn height(time: f64) -> f64 {
     speed * left - 0.5 * GRAVITY * left * left - CLEARANCE
 }
 
-/// The sample with that number, with noise of 1 um.
-pub fn sample(number: usize, seed: &mut u64) -> Sample {
-    let place = [0.0, height(number as f64 / RATE)];
+/// What is seen at a time, s, with noise of 1 um.
+pub fn sample(time: f64, seed: &mut u64) -> Sample {
+    let place = [0.0, height(time)];
     let counts = [0, 1, 0, 1].map(|axis: usize| {
         let noise: f64 = (0..12)
             .map(|_| random(seed) as u32 as f64 / f64::from(u32::MAX))

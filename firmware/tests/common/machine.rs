@@ -6,7 +6,9 @@ use std::rc::Rc;
 
 use touchdown_core::event::{Event, Notice};
 use touchdown_core::sample::Sample;
-use touchdown_firmware::board::{Abilities, Board, default_settings};
+use touchdown_firmware::board::{
+    Abilities, Board, CONVERSION_RATE_HZ, SAMPLE_RATE_HZ, default_settings,
+};
 use touchdown_firmware::drop_log::DropLog;
 use touchdown_firmware::intake::Intake;
 use touchdown_firmware::main_loop::MainLoop;
@@ -23,11 +25,19 @@ use touchdown_protocol::wire::Incoming;
 use super::chip::{Bus, Chip, NoDelay, flash};
 use super::rig::BOOT;
 
-/// All times in ns. A sample, and a byte of the line.
-pub const PERIOD: u64 = 50_000;
+/// All times in ns. A sample, a conversion, and a byte of the line.
+pub const PERIOD: u64 = 1_000_000_000 / SAMPLE_RATE_HZ as u64;
+pub const CONVERSION: u64 = 1_000_000_000 / CONVERSION_RATE_HZ as u64;
 const BYTE: u64 = 86_806;
 /// Of each call of the main loop.
 const CALL: u64 = 2_000;
+
+pub const ABILITIES: Abilities = Abilities {
+    conversion_rate: CONVERSION_RATE_HZ as f32,
+    cycles: 8_400.0,
+    full_scale: 4_095,
+    tachometers: false,
+};
 
 pub type Log = DropLog<W25q<Bus, NoDelay>, 5>;
 
@@ -76,11 +86,13 @@ impl Board for Desk {
 
 pub struct Machine {
     pub now: u64,
-    next_sample: u64,
+    next_conversion: u64,
+    converted: u64,
     /// Samples so far, and those of them that had a tick.
     pub given: u64,
     pub taken: u64,
-    source: Box<dyn FnMut(u64) -> Sample>,
+    /// Of the time, s.
+    source: Box<dyn FnMut(f64) -> Sample>,
     /// Time of the tick of each sample taken.
     pub cost: Box<dyn FnMut(u64) -> u64>,
     intake: Intake<'static>,
@@ -100,7 +112,7 @@ pub struct Machine {
 
 /// The machine and its main loop.
 pub fn started(
-    source: impl FnMut(u64) -> Sample + 'static,
+    source: impl FnMut(f64) -> Sample + 'static,
     cost: impl FnMut(u64) -> u64 + 'static,
 ) -> (Machine, MainLoop) {
     let pins = Rc::new(RefCell::new(Pins::default()));
@@ -109,12 +121,15 @@ pub fn started(
         pins: Rc::clone(&pins),
     };
     let memory = Box::leak(Box::new(Memory::empty()));
-    let filled = memory.fill(&default_settings(), Faults::NONE, BOOT, desk);
+    let settings = default_settings();
+    let oversampling = ABILITIES.oversampling(&settings.monitor).expect("whole");
+    let filled = memory.fill(&settings, oversampling, (Faults::NONE, BOOT), desk);
     let (intake, tick, below) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));
     let machine = Machine {
         now: 0,
-        next_sample: PERIOD,
+        next_conversion: CONVERSION,
+        converted: 0,
         given: 0,
         taken: 0,
         source: Box::new(source),
@@ -161,17 +176,18 @@ impl Machine {
     }
 
     fn next_event(&self) -> u64 {
-        self.next_sample.min(self.next_byte)
+        self.next_conversion.min(self.next_byte)
     }
 
     /// The sampling interrupt and the line, whatever else goes on.
     fn advance_to(&mut self, time: u64) {
         self.now = self.now.max(time);
         self.pins.borrow_mut().now = time;
-        if time == self.next_sample {
-            let sample = (self.source)(self.given);
-            self.given += 1;
-            self.next_sample += PERIOD;
+        if time == self.next_conversion {
+            let sample = (self.source)(time as f64 * 1e-9);
+            self.converted += 1;
+            self.given = self.converted * CONVERSION / PERIOD;
+            self.next_conversion += CONVERSION;
             let arrival = Incoming {
                 service: self.service,
                 ..sample.into()
@@ -193,12 +209,7 @@ impl Platform for Machine {
     type Log = Log;
 
     fn abilities(&self) -> Abilities {
-        Abilities {
-            sample_rate: 20_000.0,
-            cycles: 8_400.0,
-            full_scale: 4_095,
-            tachometers: false,
-        }
+        ABILITIES
     }
 
     fn hold<T>(&mut self, act: impl FnOnce(&mut TickTask<'static, Desk>) -> T) -> T {

@@ -17,6 +17,7 @@ pub mod health;
 pub mod learnt;
 mod memory;
 pub mod monitor;
+pub mod oversampling;
 pub mod phase;
 pub mod sample;
 pub mod sensing;

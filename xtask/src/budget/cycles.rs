@@ -15,15 +15,16 @@ use super::ticks::{self, Row, TYPICAL, Table};
 use crate::firmware;
 
 const CLOCK: u64 = 168_000_000;
-/// Sample rates, 1/s; the first is that of the firmware.
+/// Conversions of a sample, and rates of conversions, 1/s; the first is that of the firmware: `firmware/src/board/mod.rs`.
+const CONVERSIONS: u64 = 2;
 const RATES: [u64; 3] = [20_000, 25_000, 50_000];
-const PERIOD: u64 = CLOCK / RATES[0];
+const PERIOD: u64 = CONVERSIONS * CLOCK / RATES[0];
 /// Samples that can wait: `firmware/src/intake.rs`.
 const RING: usize = 15;
 /// Samples in a row, then a turn of the main loop: `firmware/src/tick.rs`.
-const IN_A_ROW: u32 = 64;
+const IN_A_ROW: u32 = 32;
 /// Samples in 10 ms.
-const SPAN: usize = 200;
+const SPAN: usize = 100;
 /// Entry and exit of the interrupt: 12 cycles and 18 words of the floating-point unit each way, as modelled a line of
 /// flash each way. How far these could be checked: `docs/build/timing.md`.
 const ENTRY_AND_EXIT: Cycles = Cycles {
@@ -31,11 +32,11 @@ const ENTRY_AND_EXIT: Cycles = Cycles {
     modelled: 72,
     upper: 150,
 };
-/// What the highest priority does with a sample that was read.
-const ON_TOP: &str = "sampling and guard on top";
 /// Parts in the order in which the image counts them, after a stream's whole ticks.
-const PARTS: [&str; 9] = [
-    ON_TOP,
+const PARTS: [&str; 10] = [
+    // What the highest priority does with those that were read; with the last one of a sample it does most.
+    "earlier conversions of a sample",
+    "sampling and guard on top",
     "guard",
     "proof, alarms, touches",
     "sensing and health",
@@ -69,8 +70,10 @@ impl Cycles {
 /// Of all streams.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Modelled {
-    /// Between two samples at 20 kHz.
+    /// Between two samples, at 20 000 conversions a second.
     period: u64,
+    /// Of a sample.
+    conversions: u64,
     /// Mean while the rotor floats on its orbit.
     typical: Cycles,
     /// Greatest of any tick, each figure by itself.
@@ -80,7 +83,7 @@ pub struct Modelled {
     top_priority_worst: Cycles,
     /// Greatest mean over 10 ms.
     mean_10_ms_modelled: u64,
-    /// At 20 kHz with the ring.
+    /// At 20 000 conversions a second, with the ring.
     samples_lost_modelled: u64,
     streams: usize,
     /// Of them found by a search; the others are the image's own.
@@ -131,7 +134,7 @@ struct PartModelled {
 /// What the samples meet.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct AtRate {
-    samples_per_s: u64,
+    conversions_per_s: u64,
     places: usize,
     samples_lost: u64,
     /// From a sample to the end of its tick.
@@ -298,9 +301,11 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
     let typical = || streams.iter().filter(|it| it.is_typical);
     let ticks = || streams.iter().flat_map(|it| it.ticks);
     let longest = worst(ticks().map(|it| it.cycles));
-    let on_top = worst(streams.iter().flat_map(|it| it.part(0)));
+    let [earlier, on_top] = [0, 1].map(|k| worst(streams.iter().flat_map(|it| it.part(k))));
     let on_top = on_top.each(ENTRY_AND_EXIT, |a, b| a + b);
-    let interrupts = |it: &PlayedStream| it.interrupts(on_top.modelled);
+    let entries = (CONVERSIONS - 1) * ENTRY_AND_EXIT.modelled;
+    let of_sample = on_top.modelled + earlier.modelled + entries;
+    let interrupts = |it: &PlayedStream| it.interrupts(of_sample);
     let interrupts: Vec<Vec<u64>> = streams.iter().map(interrupts).collect();
     let part = |(k, part): (usize, &&str)| PartModelled {
         part: (*part).into(),
@@ -318,6 +323,7 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
     let mean_10_ms = spans.map(|it| it.iter().sum::<u64>() / SPAN as u64).max();
     Modelled {
         period: PERIOD,
+        conversions: CONVERSIONS,
         typical: mean(typical().flat_map(|it| it.ticks).map(|it| it.cycles)),
         worst: longest,
         top_priority_worst: on_top,
@@ -333,7 +339,7 @@ fn modelled(streams: &[PlayedStream]) -> Modelled {
 }
 
 impl PlayedStream<'_> {
-    /// What each sample takes of the core, as modelled: so much `on_top`, and its tick.
+    /// What each sample takes of the core, as modelled: so much `on_top` for its conversions, and its tick.
     fn interrupts(&self, on_top: u64) -> Vec<u64> {
         let of = |it: &CountedWindow| on_top + it.cycles.modelled + ENTRY_AND_EXIT.modelled;
         self.ticks.iter().map(of).collect()
@@ -347,7 +353,7 @@ impl PlayedStream<'_> {
 
 /// Each stream by itself.
 fn at_rate(streams: &[Vec<u64>], rate: u64, turn: MainLoopTurn) -> AtRate {
-    let period = CLOCK / rate;
+    let period = CONVERSIONS * CLOCK / rate;
     let queues = streams
         .iter()
         .map(|it| queue::simulate(it, period, RING, turn));
@@ -356,7 +362,7 @@ fn at_rate(streams: &[Vec<u64>], rate: u64, turn: MainLoopTurn) -> AtRate {
         latency_worst: a.latency_worst.max(b.latency_worst),
     });
     AtRate {
-        samples_per_s: rate,
+        conversions_per_s: rate,
         places: RING,
         samples_lost: all.lost,
         latency_worst_us: all.latency_worst.div_ceil(CLOCK / 1_000_000),
@@ -392,8 +398,8 @@ pub fn table(it: &Modelled) -> String {
     for at in &it.queues {
         let _ = writeln!(
             text,
-            "    {} samples/s, {} waiting at most: {} lost, {} us at most to the end of a tick",
-            at.samples_per_s, at.places, at.samples_lost, at.latency_worst_us
+            "    {} conversions/s, {} waiting at most: {} lost, {} us at most to the end of a tick",
+            at.conversions_per_s, at.places, at.samples_lost, at.latency_worst_us
         );
     }
     text
@@ -423,7 +429,7 @@ mod tests {
             window_of(10),
             window_of(10),
         ];
-        let parts: Vec<_> = (1..=9).map(|k| window_of(100 * k)).collect();
+        let parts: Vec<_> = (0..=9).map(|k| window_of(100 * k)).collect();
         let stream = |is_typical, ticks| PlayedStream {
             is_typical,
             ticks,
@@ -433,7 +439,7 @@ mod tests {
         assert_eq!((it.typical.lower, it.typical.modelled), (5_999, 6_000));
         assert_eq!((it.worst.modelled, it.worst.upper), (30_000, 60_000));
         assert_eq!(it.top_priority_worst.modelled, 172);
-        assert_eq!(it.parts[3].worst_modelled, 400);
+        assert_eq!(it.parts[4].worst_modelled, 400);
         // 30 244 cycles are 3.6 periods, and three samples wait.
         assert_eq!(it.samples_lost_modelled, 0);
         assert_eq!((it.streams, it.ticks), (2, 6));

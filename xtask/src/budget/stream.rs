@@ -17,8 +17,8 @@ type Field = (&'static str, f32, f32, bool);
 /// In the order in which the image takes them (`firmware/src/bin/count_tick/scenes.rs`), SI; times in samples.
 const FIELDS: [Field; 24] = [
     // Sample at which the first end is released, and how much later the second one is.
-    ("release", 3_000.0, 5_500.0, true),
-    ("apart", -400.0, 400.0, true),
+    ("release", 1_500.0, 2_750.0, true),
+    ("apart", -200.0, 200.0, true),
     // Velocity of each end sideways as it is released.
     ("kick_a", -0.1, 0.1, false),
     ("kick_b", -0.1, 0.1, false),
@@ -41,11 +41,11 @@ const FIELDS: [Field; 24] = [
     // Of all channels, by a commissioning check.
     ("gain", 0.9, 1.1, false),
     ("skew", -0.05, 0.05, false),
-    // 0 none, 1 stuck, 2 invalid, 3 full scale, 4 drifting; again every 1 000 samples.
+    // 0 none, 1 stuck, 2 invalid, 3 full scale, 4 drifting; again every 500 samples.
     ("fault", 0.0, 4.0, true),
     ("fault_channel", 0.0, 3.0, true),
-    ("fault_from", 3_000.0, 8_500.0, true),
-    ("fault_length", 1.0, 500.0, true),
+    ("fault_from", 1_500.0, 4_250.0, true),
+    ("fault_length", 1.0, 250.0, true),
 ];
 
 /// The nearest number that the field can be.

@@ -21,20 +21,23 @@ use semihosting::process;
 use stm32f4 as _;
 
 use touchdown_core::event::{Notice, Notices};
+use touchdown_core::monitor::MonitorConfig;
+use touchdown_core::oversampling::Oversampling;
 use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Shown};
 
 use scenes::{NUMBERS, SCENES, Scene};
 use touchdown_counter::{Counter, Table, Tally};
 use touchdown_firmware::app::App;
-use touchdown_firmware::board::Board;
+use touchdown_firmware::board::{Board, CONVERSION_RATE_HZ};
 use touchdown_firmware::intake::Ring;
 use touchdown_firmware::memory;
 use touchdown_firmware::recorder::{self, Recorder};
 use touchdown_firmware::tick::tick;
 
 /// All but the forecast, which is below the tick, are parts of it.
-const PARTS: [&str; 9] = [
+const PARTS: [&str; 10] = [
+    "earlier conversions of a sample",
     "sampling and guard on top",
     "guard",
     "proof, alarms, touches",
@@ -123,9 +126,17 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     let mut notices = Notices::new();
     let mut tallies = [Tally::default(); PARTS.len()];
     let mut ring = Ring::empty();
-    let (mut intake, mut waiting) = ring.split(&scene.config()).expect("a valid configuration");
+    let oversampling = oversampling(&scene.config());
+    let (mut intake, mut waiting) =
+        (ring.split(&scene.config(), oversampling)).expect("a valid configuration");
     scene.play(|sample| {
         let sample = black_box(sample);
+        let ((), earlier) = counter.count(|| {
+            for _ in 1..oversampling.conversions() {
+                black_box(intake.take((*sample).into(), 0));
+            }
+        });
+        // The last one puts the sample into the ring.
         let (_, on_top) = counter.count(|| intake.take((*sample).into(), 0));
         black_box(waiting.pop());
         let (monitor, state) = app.monitor();
@@ -148,7 +159,7 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
             recorder.hear(&outlook);
         }
         let counts = [
-            on_top, guard, told, sensing, detector, forecast, severity, recording, outputs,
+            earlier, on_top, guard, told, sensing, detector, forecast, severity, recording, outputs,
         ];
         tallies
             .iter_mut()
@@ -170,6 +181,12 @@ fn application<'a>(scene: &Scene, place: &'a mut MaybeUninit<App>) -> &'a mut Ap
 #[inline(never)]
 fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m> {
     Recorder::new(samples, &scene.config(), &[], 0)
+}
+
+/// That of the chip.
+fn oversampling(config: &MonitorConfig) -> Oversampling {
+    let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
+    Oversampling::new(CONVERSION_RATE_HZ as f32, rate, full_scale).expect("a whole number")
 }
 
 #[inline(never)]

@@ -16,7 +16,7 @@ const NEVER: u32 = u32::MAX;
 /// Numbers that describe a stream.
 pub(super) const NUMBERS: usize = 24;
 /// Samples of a described stream.
-const DESCRIBED_SAMPLES: u32 = 9_000;
+const DESCRIBED_SAMPLES: u32 = 4_500;
 
 /// A stream of samples.
 #[derive(Clone, Copy)]
@@ -75,14 +75,14 @@ impl Fault {
             1 => *count = 2_048,
             2 => sample.valid &= !(1 << self.channel),
             3 => *count = 4_095,
-            _ => *count = count.wrapping_add((since / 8) as u16).min(4_095),
+            _ => *count = count.wrapping_add((since / 4) as u16).min(4_095),
         }
     }
 }
 
 const FLOATING: Scene = Scene {
     name: "levitated",
-    samples: 10_000,
+    samples: 5_000,
     orbit: 0.0,
     runout: 0.0,
     speed_known: false,
@@ -111,8 +111,8 @@ const TURNING: Scene = Scene {
 };
 const DROP: Scene = Scene {
     name: "drop",
-    samples: 24_000,
-    release: [6_000; PLANES],
+    samples: 12_000,
+    release: [3_000; PLANES],
     ..TURNING
 };
 
@@ -160,13 +160,13 @@ pub(super) const SCENES: [Scene; 14] = [
     },
     Scene {
         name: "ends apart",
-        release: [6_000, 6_060],
+        release: [3_000, 3_030],
         kick: [0.03, -0.03],
         ..DROP
     },
     Scene {
         name: "ends apart, speed unknown",
-        release: [6_000, 6_200],
+        release: [3_000, 3_100],
         kick: [0.05, -0.01],
         speed_known: false,
         friction: 0.3,
@@ -174,13 +174,13 @@ pub(super) const SCENES: [Scene; 14] = [
     },
     Scene {
         name: "sensors fail while floating",
-        samples: 14_000,
+        samples: 7_000,
         fail: |at, sample| match at {
-            4_000..6_000 => sample.counts[0] = 2_048,
-            7_000..7_500 => sample.valid &= 0b1101,
-            8_000..9_000 => sample.counts[2] = 4_095,
-            10_000..11_000 if at % 50 < 2 => sample.counts[3] = 3_500,
-            12_000..13_000 => sample.counts[1] = sample.counts[1].wrapping_add((at / 8) as u16),
+            2_000..3_000 => sample.counts[0] = 2_048,
+            3_500..3_750 => sample.valid &= 0b1101,
+            4_000..4_500 => sample.counts[2] = 4_095,
+            5_000..5_500 if at % 25 < 2 => sample.counts[3] = 3_500,
+            6_000..6_500 => sample.counts[1] = sample.counts[1].wrapping_add((at / 4) as u16),
             _ => {}
         },
         ..TURNING
@@ -188,8 +188,8 @@ pub(super) const SCENES: [Scene; 14] = [
     Scene {
         name: "sensors fail in a drop",
         fail: |at, sample| match at {
-            5_900.. if at % 700 < 30 => sample.valid &= 0b1011,
-            8_000.. => sample.counts[0] = 2_048,
+            2_950.. if at % 350 < 15 => sample.valid &= 0b1011,
+            4_000.. => sample.counts[0] = 2_048,
             _ => {}
         },
         ..DROP
@@ -233,7 +233,7 @@ impl Scene {
                 channel: channel as usize % CHANNELS,
                 from: from as u32,
                 length: length as u32,
-                every: 1_000,
+                every: 500,
             }),
             ..FLOATING
         }
@@ -304,7 +304,7 @@ impl Scene {
                     *count = (2_048.5 + shown * (4_096.0 / 2_000e-6)) as u16;
                 }
             }
-            let turned = (0.05 * at as f32) as u16;
+            let turned = (0.1 * at as f32) as u16;
             let edges = Edges {
                 count: turned / 4,
                 age: (turned % 4) as u8 * 64,

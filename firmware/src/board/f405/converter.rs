@@ -7,7 +7,7 @@ use stm32f4::stm32f405::{ADC_COMMON, ADC1, ADC2, GPIOA, RCC, TIM2, TIM3, adc1};
 use touchdown_core::sample::CHANNELS;
 
 use super::clocks::APB1_TIMER_HZ;
-use crate::board::SAMPLE_RATE_HZ;
+use crate::board::CONVERSION_RATE_HZ;
 use crate::platform::SampleSource;
 
 /// Of ADC1 and ADC2, plane a then plane b: PA4 and PA6 are x, PA5 and PA7 are y. Both converters reach all four pins
@@ -52,7 +52,7 @@ impl Converter {
 
         timer
             .arr()
-            .write(|w| w.arr().set(APB1_TIMER_HZ / SAMPLE_RATE_HZ - 1));
+            .write(|w| w.arr().set(APB1_TIMER_HZ / CONVERSION_RATE_HZ - 1));
         timer.cr2().write(|w| w.mms().update());
         // Its clock is TIM2's trigger: RM0090, TIMx internal trigger connection.
         number

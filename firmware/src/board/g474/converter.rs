@@ -12,7 +12,7 @@ use touchdown_core::sample::CHANNELS;
 use super::clocks::CORE_HZ;
 use super::spi::{SelectedSpi, Wait};
 use crate::ad7606::Ad7606;
-use crate::board::SAMPLE_RATE_HZ;
+use crate::board::CONVERSION_RATE_HZ;
 use crate::board::silicon::Bus;
 use crate::platform::SampleSource;
 
@@ -84,7 +84,7 @@ impl ExternalConverter {
             pins.pupdr().modify(|_, w| w.pupdr0().bits(2));
             pins.moder()
                 .modify(|_, w| w.moder0().bits(0).moder1().bits(1));
-            let period = CORE_HZ / SAMPLE_RATE_HZ;
+            let period = CORE_HZ / CONVERSION_RATE_HZ;
             timer.arr().write(|w| w.bits(period - 1));
             timer.ccr(0).write(|w| w.bits(period - LOW));
             // High until the compare, so that the update is the rise: RM0440, PWM mode 1. The update is the trigger.

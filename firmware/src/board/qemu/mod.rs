@@ -116,14 +116,17 @@ struct Sampling {
     replay: Replay,
     wire: Wire,
     intake: Intake<'static>,
+    /// Conversions that were given, and those of a sample.
     given: u32,
+    conversions: u32,
     in_real_time: bool,
 }
 
 impl Sampling {
     fn take(&mut self) {
         self.timer.sr().modify(|_, w| w.uif().clear_bit());
-        let is_free = self.in_real_time || self.given == DONE.load(Ordering::Acquire);
+        let is_done = self.given / self.conversions == DONE.load(Ordering::Acquire);
+        let is_free = self.in_real_time || is_done;
         if !is_free || IS_OVER.load(Ordering::Relaxed) {
             self.wire.step(None);
             return;
@@ -175,7 +178,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let head = files.replay.head().ok_or(Failure::Replay)?;
     // Those of a board that gives the samples of this configuration.
     let abilities = Abilities {
-        sample_rate: head.config.detector.sample_rate,
+        conversion_rate: head.config.detector.sample_rate,
         cycles: f32::INFINITY,
         full_scale: head.config.sensing.full_scale,
         tachometers: head.config.tachometers.is_some(),
@@ -190,7 +193,9 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         ticks: 0,
         block,
     };
-    let filled = memory.fill(&settings, found, boot, board);
+    let oversampling = abilities.oversampling(&settings.monitor);
+    let oversampling = oversampling.ok_or(Failure::Config)?;
+    let filled = memory.fill(&settings, oversampling, (found, boot), board);
     let (intake, tick, below) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -201,16 +206,17 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         tick.app.assume_lift();
     }
     TICK.put(tick);
-    let (wire, line) = line::open(chip.USART1, abilities.sample_rate);
+    let (wire, line) = line::open(chip.USART1, abilities.conversion_rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
         replay: files.replay,
         wire,
         intake,
         given: 0,
+        conversions: oversampling.conversions().into(),
         in_real_time: head.in_real_time,
     });
-    SAMPLING.with(|it| start_timer(&it.timer, abilities.sample_rate));
+    SAMPLING.with(|it| start_timer(&it.timer, abilities.conversion_rate));
     held::unmask(&mut core, Interrupt::TIM2);
     let platform = EmulatorPlatform {
         line,

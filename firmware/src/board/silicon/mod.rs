@@ -28,7 +28,7 @@ pub use self::inputs::{InputRegisters, Inputs};
 pub use self::line::{Line, LineRegisters, RING_BYTES};
 pub use self::platform::ChipPlatform;
 pub use self::slots::ConfigFlash;
-use super::{Abilities, Board, SAMPLE_RATE_HZ};
+use super::{Abilities, Board, CONVERSION_RATE_HZ};
 use crate::drop_log::DropLog;
 use crate::intake::Intake;
 use crate::journal;
@@ -77,8 +77,8 @@ pub trait Chip: ConfigFlash + Sized + 'static {
     const FULL_SCALE: u16;
     /// What a configuration has to fit. No pin takes the pulses of ring and cage.
     const ABILITIES: Abilities = Abilities {
-        sample_rate: SAMPLE_RATE_HZ as f32,
-        cycles: (Self::MHZ * 1_000_000 / SAMPLE_RATE_HZ) as f32,
+        conversion_rate: CONVERSION_RATE_HZ as f32,
+        cycles: (Self::MHZ * 1_000_000 / CONVERSION_RATE_HZ) as f32,
         full_scale: Self::FULL_SCALE,
         tachometers: false,
     };
@@ -233,7 +233,9 @@ impl<C: Chip> ChipParts<C> {
         let outputs = self.outputs;
         let board = ChipBoard::<C> { outputs, block };
         let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
-        let filled = memory.fill(&settings, found, boot, board);
+        // Without it the configuration would not have been taken.
+        let oversampling = C::ABILITIES.oversampling(&settings.monitor)?;
+        let filled = memory.fill(&settings, oversampling, (found, boot), board);
         let (intake, tick, below) = filled.inspect_err(refused).ok()?;
         tick.app.recall(counters.and_then(|it| it.uncleared));
         tick.desk.board.outputs.start_watchdog();
