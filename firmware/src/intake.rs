@@ -77,6 +77,11 @@ pub struct Intake<'m> {
 }
 
 impl Intake<'_> {
+    /// Conversions of a sample.
+    pub fn conversions(&self) -> u32 {
+        self.oversampling.conversions().into()
+    }
+
     /// Takes a conversion, before which so many were lost. Whether the outputs must be safe now: the guard trips,
     /// and they are not.
     #[inline]

@@ -7,13 +7,12 @@ use core::mem::MaybeUninit;
 
 use touchdown_core::forecast::ForecastTask;
 use touchdown_core::monitor::{Monitor, MonitorConfig};
-use touchdown_core::oversampling::Oversampling;
 use touchdown_protocol::config_block::{self, Settings};
 use touchdown_protocol::controller::Faults;
 use touchdown_rotor::error::ConfigError;
 
 use crate::app::App;
-use crate::board::Board;
+use crate::board::{Abilities, Board};
 use crate::intake::{Intake, Ring};
 use crate::main_loop::MainLoop;
 use crate::recorder::{self, Recorder};
@@ -46,13 +45,14 @@ impl Memory {
     pub fn fill<B: Board>(
         &'static mut self,
         settings: &Settings,
-        oversampling: Oversampling,
+        abilities: &Abilities,
         (found, boot): (Faults, u32),
         board: B,
     ) -> Result<(Intake<'static>, TickTask<'static, B>, MainLoop), ConfigError> {
         let app = application(&mut self.app, &settings.monitor, found)?;
         let (place, samples) = (&mut self.recorder, &mut self.samples);
         let recorder = recorder(place, samples, settings, board.config(), boot);
+        let oversampling = abilities.oversampling(&settings.monitor)?;
         let (intake, waiting) = self.ring.split(&settings.monitor, oversampling)?;
         let tick = TickTask::new(app, recorder, board, &mut self.outbox, waiting);
         let forecast = forecast_task(&settings.monitor)?;

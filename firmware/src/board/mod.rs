@@ -17,6 +17,7 @@ use touchdown_core::oversampling::Oversampling;
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::Shown;
+use touchdown_rotor::error::ConfigError;
 
 use crate::cost;
 
@@ -52,8 +53,8 @@ impl Abilities {
     /// The first parameter of `config` that does not fit.
     pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
         let instants = &config.detector.tuning;
-        let conversions = self.oversampling(config).map(|it| it.conversions());
-        if conversions.is_none_or(|it| f32::from(it) * self.cycles < cost::BUSIEST) {
+        let conversions = self.oversampling(config).map_or(0, |it| it.conversions());
+        if conversions == 0 || f32::from(conversions) * self.cycles < cost::BUSIEST {
             Some("sample_rate")
         } else if config.sensing.full_scale != self.full_scale {
             Some("full_scale")
@@ -71,9 +72,9 @@ impl Abilities {
     }
 
     /// How its conversions become the samples that `config` asks for.
-    pub fn oversampling(&self, config: &MonitorConfig) -> Option<Oversampling> {
+    pub fn oversampling(&self, config: &MonitorConfig) -> Result<Oversampling, ConfigError> {
         let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
-        Oversampling::new(self.conversion_rate, rate, full_scale)
+        Oversampling::try_new(self.conversion_rate, rate, full_scale)
     }
 }
 

@@ -122,8 +122,7 @@ pub fn started(
     };
     let memory = Box::leak(Box::new(Memory::empty()));
     let settings = default_settings();
-    let oversampling = ABILITIES.oversampling(&settings.monitor).expect("whole");
-    let filled = memory.fill(&settings, oversampling, (Faults::NONE, BOOT), desk);
+    let filled = memory.fill(&settings, &ABILITIES, (Faults::NONE, BOOT), desk);
     let (intake, tick, below) = filled.expect("a valid configuration");
     let (flash, bus) = flash(Chip::new(20));
     let machine = Machine {

@@ -1,6 +1,7 @@
 //! A converter that is faster than the monitor: each sample is the mean of as many conversions, so none is thrown away.
 
 use crate::sample::{CHANNELS, Sample};
+use touchdown_rotor::error::ConfigError;
 
 /// Most conversions of a sample, as a power of two.
 const MOST_DOUBLINGS: u8 = 4;
@@ -31,13 +32,19 @@ pub struct OversamplingState {
 }
 
 impl Oversampling {
-    /// Of a converter of `conversion_rate` (Hz), whose counts go up to `full_scale`; `None` unless 1, 2, 4, 8 or 16
+    /// Of a converter of `conversion_rate` (Hz), whose counts go up to `full_scale`. Refused unless 1, 2, 4, 8 or 16
     /// conversions make a sample at `sample_rate` (Hz).
-    pub fn new(conversion_rate: f32, sample_rate: f32, full_scale: u16) -> Option<Self> {
+    pub fn try_new(
+        conversion_rate: f32,
+        sample_rate: f32,
+        full_scale: u16,
+    ) -> Result<Self, ConfigError> {
         let ratio = conversion_rate / sample_rate;
         let fits = |doublings: &u8| ratio == f32::from(1_u16 << doublings);
-        Some(Self {
-            doublings: (0..=MOST_DOUBLINGS).find(fits)?,
+        let rule = "the rate of the conversions over 1, 2, 4, 8 or 16";
+        let refused = ConfigError::OutOfRange("sample_rate", rule);
+        Ok(Self {
+            doublings: (0..=MOST_DOUBLINGS).find(fits).ok_or(refused)?,
             full_scale,
         })
     }
@@ -128,7 +135,7 @@ mod tests {
         given: impl IntoIterator<Item = (Sample, u32)>,
     ) -> Vec<(u32, Sample)> {
         let rate = 1_000.0;
-        let it = Oversampling::new(f32::from(conversions) * rate, rate, FULL_SCALE).unwrap();
+        let it = Oversampling::try_new(f32::from(conversions) * rate, rate, FULL_SCALE).unwrap();
         let mut state = OversamplingState::default();
         let take = |(conversion, lost): (Sample, u32)| {
             let (counts, valid) = it.take(&mut state, &conversion, lost)?;
@@ -158,7 +165,7 @@ mod tests {
             [17, 103, 0xfffd, 7],
             [19, 103, 0xfffe, 8],
         ];
-        let it = Oversampling::new(40e3, 10e3, u16::MAX).unwrap();
+        let it = Oversampling::try_new(40e3, 10e3, u16::MAX).unwrap();
         let mut state = OversamplingState::default();
         let samples = given.map(|given| it.take(&mut state, &of(given), 0));
         // Of 14.5, 101.75, 65 530.25 and 7.25.
@@ -214,8 +221,13 @@ mod tests {
 
     #[test]
     fn other_rates_are_refused() {
-        let conversions =
-            |sample_rate| Some(Oversampling::new(20e3, sample_rate, 4_095)?.conversions());
+        let conversions = |sample_rate| {
+            Some(
+                Oversampling::try_new(20e3, sample_rate, 4_095)
+                    .ok()?
+                    .conversions(),
+            )
+        };
         for power in [1, 2, 4, 8, 16_u16] {
             assert_eq!(conversions(20e3 / f32::from(power)), Some(power));
         }

@@ -186,7 +186,7 @@ fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m
 /// That of the chip.
 fn oversampling(config: &MonitorConfig) -> Oversampling {
     let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
-    Oversampling::new(CONVERSION_RATE_HZ as f32, rate, full_scale).expect("a whole number")
+    Oversampling::try_new(CONVERSION_RATE_HZ as f32, rate, full_scale).expect("a whole number")
 }
 
 #[inline(never)]

@@ -193,9 +193,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         ticks: 0,
         block,
     };
-    let oversampling = abilities.oversampling(&settings.monitor);
-    let oversampling = oversampling.ok_or(Failure::Config)?;
-    let filled = memory.fill(&settings, oversampling, (found, boot), board);
+    let filled = memory.fill(&settings, &abilities, (found, boot), board);
     let (intake, tick, below) = filled.map_err(|refusal| {
         error!("config: {}", Display2Format(&refusal));
         Failure::Config
@@ -211,9 +209,9 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         timer: chip.TIM2,
         replay: files.replay,
         wire,
+        conversions: intake.conversions(),
         intake,
         given: 0,
-        conversions: oversampling.conversions().into(),
         in_real_time: head.in_real_time,
     });
     SAMPLING.with(|it| start_timer(&it.timer, abilities.conversion_rate));

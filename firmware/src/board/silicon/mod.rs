@@ -233,9 +233,7 @@ impl<C: Chip> ChipParts<C> {
         let outputs = self.outputs;
         let board = ChipBoard::<C> { outputs, block };
         let refused = |refusal: &ConfigError| error!("config: {=str}", refusal.parameter());
-        // Without it the configuration would not have been taken.
-        let oversampling = C::ABILITIES.oversampling(&settings.monitor)?;
-        let filled = memory.fill(&settings, oversampling, (found, boot), board);
+        let filled = memory.fill(&settings, &C::ABILITIES, (found, boot), board);
         let (intake, tick, below) = filled.inspect_err(refused).ok()?;
         tick.app.recall(counters.and_then(|it| it.uncleared));
         tick.desk.board.outputs.start_watchdog();
