@@ -52,7 +52,7 @@ pub struct Abilities {
 impl Abilities {
     /// The first parameter of `config` that does not fit.
     pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
-        let instants = &config.detector.tuning;
+        let tuning = &config.detector.tuning;
         let conversions = self.oversampling(config).map_or(0, |it| it.conversions());
         if conversions == 0 || f32::from(conversions) * self.cycles < cost::BUSIEST {
             Some("sample_rate")
@@ -62,9 +62,9 @@ impl Abilities {
             Some("marks")
         } else if self.cycles.is_infinite() {
             None
-        } else if instants.release_instants > cost::MOST_INSTANTS {
+        } else if tuning.release_instants > cost::MOST_INSTANTS {
             Some("release_instants")
-        } else if instants.impact_instants > cost::MOST_INSTANTS {
+        } else if tuning.impact_instants > cost::MOST_INSTANTS {
             Some("impact_instants")
         } else {
             None
