@@ -46,11 +46,12 @@ impl Ring {
     ) -> Result<(Intake<'m>, Waiting<'m>), ConfigError> {
         let (samples, waiting) = self.waiting.split();
         let gate = &self.gate;
-        // The guard counts conversions.
+        // The guard sees conversions.
+        let sensing = Sensing::try_new(&oversampling.of_conversions(&config.sensing))?;
         let mut detector = config.detector;
         detector.sample_rate *= f32::from(oversampling.conversions());
         let intake = Intake {
-            sensing: Sensing::try_new(&config.sensing)?,
+            sensing,
             guard: Guard::try_new(&config.guard, &detector, config.fitted, config.commissioned)?,
             state: GuardState::default(),
             oversampling,

@@ -8,6 +8,7 @@ use touchdown_core::config::Tuning;
 use touchdown_core::event::{EventKind, Notice, Notices};
 use touchdown_core::fault::{Condition, FaultKind};
 use touchdown_core::monitor::{Monitor, MonitorConfig};
+use touchdown_core::oversampling::ConverterConfig;
 use touchdown_core::sample::{CHANNELS, Sample, TACHOMETERS};
 use touchdown_firmware::app::App;
 use touchdown_firmware::board::{
@@ -136,7 +137,7 @@ impl Bench {
         let counts = [0, 1, 0, 1].map(|axis| {
             let noise: f64 = (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0;
             let place = position[axis] + 1e-6 * noise;
-            (2_048.0 + place * 4_096.0 / 2_000e-6).round() as u16
+            (4_096.0 + place * 8_192.0 / 2_000e-6).round() as u16
         });
         Sample {
             counts,
@@ -533,9 +534,11 @@ fn without_a_configuration_of_its_own_there_is_never_current() {
 #[test]
 fn a_configuration_has_to_fit_the_board() {
     let board = Abilities {
-        conversion_rate: CONVERSION_RATE_HZ as f32,
+        converter: ConverterConfig {
+            rate: CONVERSION_RATE_HZ as f32,
+            full_scale: 4_095,
+        },
         cycles: 8_400.0,
-        full_scale: 4_095,
         tachometers: false,
     };
     let fits = default_config();
@@ -544,8 +547,8 @@ fn a_configuration_has_to_fit_the_board() {
     for (rate, misfit) in [
         (20e3, Some("sample_rate")),
         (15e3, Some("sample_rate")),
-        (5e3, None),
-        (1_250.0, None),
+        // 14 bits.
+        (5e3, Some("full_scale")),
         (625.0, Some("sample_rate")),
     ] {
         let mut other = fits;
@@ -553,8 +556,10 @@ fn a_configuration_has_to_fit_the_board() {
         assert_eq!(board.misfit(&other), misfit, "{rate}");
     }
     let mut other = fits;
-    other.sensing.full_scale = 65_535;
+    other.sensing.full_scale = 4_095;
     assert_eq!(board.misfit(&other), Some("full_scale"));
+    (other.detector.sample_rate, other.sensing.full_scale) = (5e3, 16_383);
+    assert_eq!(board.misfit(&other), None);
     let emulated = Abilities {
         cycles: f32::INFINITY,
         ..board

@@ -40,7 +40,7 @@ fn drop(lost: impl Fn(usize) -> bool) -> Outcome {
     let (mut events, mut gone, mut seed) = (vec![], 0, 1);
     let all = (DURATION * RATE) as usize;
     for number in 0..all {
-        let sample = sample(number as f64 / RATE, &mut seed);
+        let sample = sample(number as f64 / RATE, 13, &mut seed);
         if lost(number) && number + 1 < all {
             gone += 1;
             continue;

@@ -19,7 +19,7 @@ const TICK: u64 = 42_000;
 
 fn falling() -> impl FnMut(f64) -> Sample {
     let mut seed = 1;
-    move |time| sample(time, &mut seed)
+    move |time| sample(time, 12, &mut seed)
 }
 
 /// Of the sample at a time, s.
@@ -115,7 +115,7 @@ fn the_guard_on_top_trips_while_a_tick_takes_long() {
         // No detector trips it before: what it falls is a slow drift.
         let drift = move |time: f64| {
             let mut seed = (time * 1e9) as u64 / CONVERSION;
-            let still = sample(0.0, &mut seed);
+            let still = sample(0.0, 12, &mut seed);
             let count =
                 ((time - RELEASE).max(0.0) / 6.4e-3).min(1.4) * 0.67 * 0.3e-3 * 4_096.0 / 2_000e-6;
             let mut counts = still.counts;

@@ -56,9 +56,9 @@ struct Kept {
 
 fn sample(height: f64) -> Sample {
     let gap = f64::from(default_config().detector.machine.clearance);
-    let y = (2_048.0 + height * gap * 4_096.0 / 2_000e-6).round() as u16;
+    let y = (4_096.0 + height * gap * 8_192.0 / 2_000e-6).round() as u16;
     Sample {
-        counts: [2_048, y, 2_048, y],
+        counts: [4_096, y, 4_096, y],
         valid: 0b1111,
         spin: None,
         levitated: None,

@@ -378,14 +378,14 @@ fn ticks_are_numbered_as_the_monitor_does() {
     for tick in 0..12_000_u32 {
         // Levitated in the centre, then 9.81 m/s^2 downwards from tick 8000 on.
         let fallen = f64::from(tick.saturating_sub(8_000)) / 20_000.0;
-        let fall = (0.5 * 9.81 * fallen * fallen).min(0.3e-3) / (2_000e-6 / 4_096.0);
+        let fall = (0.5 * 9.81 * fallen * fallen).min(0.3e-3) / (2_000e-6 / 8_192.0);
         let dither = (tick.wrapping_mul(2_654_435_761) >> 30) as u16;
         let sample = Sample {
             counts: [
-                2_048 + dither,
-                2_048 + dither - fall as u16,
-                2_048 + dither,
-                2_048 + dither - fall as u16,
+                4_096 + dither,
+                4_096 + dither - fall as u16,
+                4_096 + dither,
+                4_096 + dither - fall as u16,
             ],
             valid: 0x0f,
             spin: None,

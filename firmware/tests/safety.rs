@@ -338,7 +338,7 @@ proptest! {
             for number in 0..it.samples {
                 let part = f64::from(number) / f64::from(it.samples);
                 let place = [0, 1].map(|axis| it.from[axis] + part * (it.to[axis] - it.from[axis]));
-                let count = |part: f64| (2_048.0 + part * gap * 4_096.0 / 2_000e-6).round() as u16;
+                let count = |part: f64| (4_096.0 + part * gap * 8_192.0 / 2_000e-6).round() as u16;
                 let [x, y] = place.map(count);
                 // A count of noise.
                 let told = [x, y, x, y].map(|count| count + (number / 3 % 2) as u16);
@@ -361,7 +361,7 @@ proptest! {
                 let shown = app.shown();
                 // As plane a reads; a count is 0.0016 of the gap.
                 let [x, y] = [counts[0], counts[1]]
-                    .map(|it: u16| (f64::from(it) - 2_048.0) * 2_000e-6 / 4_096.0 / gap);
+                    .map(|it: u16| (f64::from(it) - 4_096.0) * 2_000e-6 / 8_192.0 / gap);
                 let is_beyond = it.sees && x.hypot(y) > 0.672;
                 beyond = if is_beyond { beyond + 1 } else if it.sees { 0 } else { beyond };
                 blind = if it.sees { 0 } else { blind + 1 };

@@ -10,12 +10,18 @@ use touchdown_tests::machine_runs::{self, Machine};
 struct Arguments {
     #[command(flatten)]
     campaign: Campaign,
+    /// Conversions of a sample: 1, 2, 4, 8 or 16
+    #[arg(long, default_value_t = 1, conflicts_with = "record")]
+    conversions: u16,
 }
 
 fn main() {
-    let Arguments { campaign } = Arguments::parse();
+    let Arguments {
+        campaign,
+        conversions,
+    } = Arguments::parse();
     let asked = &campaign.asked;
-    let machines = machine_runs::run(&asked.only, asked.runs, asked.first_seed);
+    let machines = machine_runs::run(&asked.only, asked.runs, asked.first_seed, conversions);
     let failed = machines.iter().filter(|it| !it.failures.is_empty());
     let failures: Vec<_> = failed
         .map(|it| format!("{}: drops {:?}", it.name, it.failures))

@@ -23,6 +23,8 @@ pub mod minimal_scene;
 pub mod moment;
 pub mod monitor_run;
 pub mod mounted;
+pub mod oversampled;
+pub mod oversampling_runs;
 pub mod plant;
 pub mod record;
 pub mod rig;

@@ -1,6 +1,8 @@
 //! Drops of every machine of the scene list, around what its file says; the monitor is told the file. What it tells is held
 //! against the reference.
 //!
+//! Each sample of the monitor is the sum of some conversions of the sensors, whose rate is the scene's.
+//!
 //! A lift-off is false while the rotor stays in all its rings for a millisecond before and after.
 //!
 //! A touch is all that a rotor does in a ring from meeting it to leaving it for a millisecond: a ring on a soft mount is met
@@ -17,6 +19,7 @@ use touchdown_scene::{BUILT_IN, Scene};
 use touchdown_truth::Truth;
 
 use crate::family::upper_bound;
+use crate::oversampled::Oversampled;
 
 /// Time within which an event is that of a touch or an impact, s.
 const SAME: f64 = 1e-3;
@@ -54,20 +57,22 @@ pub struct Machine {
     pub failures: Vec<u64>,
 }
 
-/// The machines whose name contains `only`, so many drops of each.
-pub fn run(only: &str, drops: u64, first: u64) -> Vec<Machine> {
+/// The machines whose name contains `only`, so many drops of each, so many conversions of a sample.
+pub fn run(only: &str, drops: u64, first: u64, conversions: u16) -> Vec<Machine> {
     let machines = BUILT_IN.iter().filter(|it| it.name.contains(only));
-    machines.map(|it| machine(it.name, drops, first)).collect()
+    machines
+        .map(|it| machine(it.name, drops, first, conversions))
+        .collect()
 }
 
-fn machine(name: &'static str, drops: u64, first: u64) -> Machine {
+fn machine(name: &'static str, drops: u64, first: u64, conversions: u16) -> Machine {
     let told = Scene::load(name).expect("a built-in scene");
     let seen: Vec<Seen> = (first..first + drops)
         .into_par_iter()
         .map(|number| {
             let mut scene = varied(&told, number);
             scene.run.seed = number;
-            watch(&scene, &told, number)
+            watch(&scene, &told, number, conversions)
         })
         .collect();
     let mut all = Machine {
@@ -116,11 +121,12 @@ struct Contact {
     turns: [f64; 2],
 }
 
-fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
+fn watch(scene: &Scene, told: &Scene, number: u64, conversions: u16) -> Seen {
     let rate = scene.run.sample_rate;
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("valid sensors");
     let mut chain = sensors.start(scene.run.seed);
-    let monitor = Monitor::try_new(&told.monitor_config()).expect("a valid configuration");
+    let mut oversampled = Oversampled::new(told.monitor_config(), conversions);
+    let monitor = Monitor::try_new(&oversampled.config).expect("a valid configuration");
     let mut state = MonitorState::default();
     let mut truth = Truth::new(scene);
     let levitated = scene.levitated_samples() as f64;
@@ -155,10 +161,15 @@ fn watch(scene: &Scene, told: &Scene, number: u64) -> Seen {
         }
         let spin = at.rotor.spin;
         let sample = sensors.read(&mut chain, &at.motion(time < 0.0));
+        let Some(sample) = oversampled.take(&sample) else {
+            continue;
+        };
         for notice in monitor.update(&mut state, &sample) {
             match notice {
                 Notice::Declared(event) => {
-                    let onset = (event.onset.samples() - levitated) / rate;
+                    // A sample is there with its last conversion.
+                    let onset = (event.onset.samples() + 1.0) * f64::from(conversions);
+                    let onset = (onset - 1.0 - levitated) / rate;
                     match event.kind {
                         EventKind::Impact => impacts.push(onset),
                         EventKind::LiftOff => lift_offs.push(onset),

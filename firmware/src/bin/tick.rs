@@ -6,6 +6,7 @@
 use core::panic::PanicInfo;
 
 use touchdown_core::event::Notice;
+use touchdown_core::oversampling::ConverterConfig;
 use touchdown_core::sample::Sample;
 use touchdown_firmware::board::silicon::{Bus, CycleDelay, SpiRegisters};
 use touchdown_firmware::board::{Abilities, Board};
@@ -108,9 +109,11 @@ impl Platform for BarePlatform {
 
     fn abilities(&self) -> Abilities {
         Abilities {
-            conversion_rate: f32::from(read()),
+            converter: ConverterConfig {
+                rate: f32::from(read()),
+                full_scale: 4_095,
+            },
             cycles: f32::from(read()),
-            full_scale: 4_095,
             tachometers: false,
         }
     }

@@ -13,7 +13,7 @@ use touchdown_core::detect::{DetectorConfig, MachineConfig, Tuning};
 use touchdown_core::event::Notice;
 use touchdown_core::guard::GuardConfig;
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::oversampling::Oversampling;
+use touchdown_core::oversampling::{ConverterConfig, Oversampling};
 use touchdown_core::sensing::SensingConfig;
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::Shown;
@@ -39,12 +39,10 @@ pub trait Board {
 /// What a board can do, which a configuration has to fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Abilities {
-    /// Of the converter, Hz.
-    pub conversion_rate: f32,
+    /// Of its sensors.
+    pub converter: ConverterConfig,
     /// Of the core between two conversions; any number where samples wait for it.
     pub cycles: f32,
-    /// Highest count.
-    pub full_scale: u16,
     /// Whether it takes the pulses of ring and cage.
     pub tachometers: bool,
 }
@@ -53,10 +51,12 @@ impl Abilities {
     /// The first parameter of `config` that does not fit.
     pub fn misfit(&self, config: &MonitorConfig) -> Option<&'static str> {
         let tuning = &config.detector.tuning;
-        let conversions = self.oversampling(config).map_or(0, |it| it.conversions());
-        if conversions == 0 || f32::from(conversions) * self.cycles < cost::BUSIEST {
+        let Ok(oversampling) = self.oversampling(config) else {
+            return Some("sample_rate");
+        };
+        if f32::from(oversampling.conversions()) * self.cycles < cost::BUSIEST {
             Some("sample_rate")
-        } else if config.sensing.full_scale != self.full_scale {
+        } else if config.sensing.full_scale != oversampling.full_scale() {
             Some("full_scale")
         } else if config.tachometers.is_some() && !self.tachometers {
             Some("marks")
@@ -73,8 +73,7 @@ impl Abilities {
 
     /// How its conversions become the samples that `config` asks for.
     pub fn oversampling(&self, config: &MonitorConfig) -> Result<Oversampling, ConfigError> {
-        let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
-        Oversampling::try_new(self.conversion_rate, rate, full_scale)
+        Oversampling::try_new(self.converter, config.detector.sample_rate)
     }
 }
 
@@ -85,7 +84,7 @@ pub const EMULATED_SLOTS: usize = 8;
 
 /// Conversions per second of the silicon images, Hz.
 pub const CONVERSION_RATE_HZ: u32 = 20_000;
-/// Samples per second where nothing else is configured, Hz: each is the mean of two conversions.
+/// Samples per second where nothing else is configured, Hz: each is the sum of two conversions.
 pub const SAMPLE_RATE_HZ: u32 = 10_000;
 
 /// Speed of the link, baud.
@@ -97,14 +96,15 @@ pub fn default_settings() -> Settings {
     default_config().into()
 }
 
-/// Default configuration: the rig of the source paper, four channels of 12 bit over +-1000 um.
+/// Default configuration: the rig of the source paper, four channels of 13 bit over +-1000 um, as two conversions of 12 bit
+/// give them.
 pub fn default_config() -> MonitorConfig {
     MonitorConfig {
         fitted: 0b1111,
         sensing: SensingConfig {
-            resolution: 2_000e-6 / 4_096.0,
-            zero_count: 2_048.0,
-            full_scale: 4_095,
+            resolution: 2_000e-6 / 8_192.0,
+            zero_count: 4_096.0,
+            full_scale: 8_191,
             mounting_angle: [0.0; 2],
             calibration: None,
             places: None,

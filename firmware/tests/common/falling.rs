@@ -30,15 +30,15 @@ fn height(time: f64) -> f64 {
     speed * left - 0.5 * GRAVITY * left * left - CLEARANCE
 }
 
-/// What is seen at a time, s, with noise of 1 um.
-pub fn sample(time: f64, seed: &mut u64) -> Sample {
+/// What is seen at a time, s, with noise of 1 um, in so many bits.
+pub fn sample(time: f64, bits: u16, seed: &mut u64) -> Sample {
     let place = [0.0, height(time)];
     let counts = [0, 1, 0, 1].map(|axis: usize| {
         let noise: f64 = (0..12)
             .map(|_| random(seed) as u32 as f64 / f64::from(u32::MAX))
             .sum();
         let reading = place[axis] + 1e-6 * (noise - 6.0);
-        (2_048.0 + reading * 4_096.0 / 2_000e-6).round() as u16
+        ((0.5 + reading / 2_000e-6) * f64::from(1 << bits)).round() as u16
     });
     Sample {
         counts,

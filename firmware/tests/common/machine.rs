@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use touchdown_core::event::{Event, Notice};
+use touchdown_core::oversampling::ConverterConfig;
 use touchdown_core::sample::Sample;
 use touchdown_firmware::board::{
     Abilities, Board, CONVERSION_RATE_HZ, SAMPLE_RATE_HZ, default_settings,
@@ -33,9 +34,11 @@ const BYTE: u64 = 86_806;
 const CALL: u64 = 2_000;
 
 pub const ABILITIES: Abilities = Abilities {
-    conversion_rate: CONVERSION_RATE_HZ as f32,
+    converter: ConverterConfig {
+        rate: CONVERSION_RATE_HZ as f32,
+        full_scale: 4_095,
+    },
     cycles: 8_400.0,
-    full_scale: 4_095,
     tachometers: false,
 };
 

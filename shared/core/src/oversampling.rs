@@ -1,18 +1,32 @@
-//! A converter that is faster than the monitor: each sample is the mean of as many conversions, so none is thrown away.
+//! A converter that is faster than the monitor: each sample is the sum of some conversions, so none is thrown away.
+//!
+//! A sum has more bits than a conversion, up to 16 in all; beyond these it is rounded.
 
 use crate::sample::{CHANNELS, Sample};
+use crate::sensing::SensingConfig;
 use touchdown_rotor::error::ConfigError;
 
 /// Most conversions of a sample, as a power of two.
 const MOST_DOUBLINGS: u8 = 4;
 
+/// A converter.
+#[derive(Clone, Copy, Debug)]
+pub struct ConverterConfig {
+    /// Conversions per second, Hz.
+    pub rate: f32,
+    /// Highest count.
+    pub full_scale: u16,
+}
+
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Oversampling {
+    /// Highest count of a conversion.
+    full_scale: u16,
     /// Conversions of a sample, as a power of two.
     doublings: u8,
-    /// Highest count.
-    full_scale: u16,
+    /// Bits of their sum that are left out.
+    shift: u8,
 }
 
 /// What it carries from conversion to conversion.
@@ -26,26 +40,24 @@ pub struct OversamplingState {
     /// A bit for each channel that was valid in all of them.
     valid: u8,
     sums: [u32; CHANNELS],
-    /// Whether a channel was saturated in one of them, and its count there.
+    /// Whether a channel was saturated in one of them, and its count then.
     is_saturated: bool,
     saturated: [Option<u16>; CHANNELS],
 }
 
 impl Oversampling {
-    /// Of a converter of `conversion_rate` (Hz), whose counts go up to `full_scale`. Refused unless 1, 2, 4, 8 or 16
-    /// conversions make a sample at `sample_rate` (Hz).
-    pub fn try_new(
-        conversion_rate: f32,
-        sample_rate: f32,
-        full_scale: u16,
-    ) -> Result<Self, ConfigError> {
-        let ratio = conversion_rate / sample_rate;
+    /// Refused unless 1, 2, 4, 8 or 16 conversions make a sample at `sample_rate` (Hz).
+    pub fn try_new(converter: ConverterConfig, sample_rate: f32) -> Result<Self, ConfigError> {
+        let ratio = converter.rate / sample_rate;
         let fits = |doublings: &u8| ratio == f32::from(1_u16 << doublings);
         let rule = "the rate of the conversions over 1, 2, 4, 8 or 16";
         let refused = ConfigError::OutOfRange("sample_rate", rule);
+        let doublings = (0..=MOST_DOUBLINGS).find(fits).ok_or(refused)?;
+        let spare = converter.full_scale.leading_zeros() as u8;
         Ok(Self {
-            doublings: (0..=MOST_DOUBLINGS).find(fits).ok_or(refused)?,
-            full_scale,
+            full_scale: converter.full_scale,
+            doublings,
+            shift: doublings.saturating_sub(spare),
         })
     }
 
@@ -54,9 +66,30 @@ impl Oversampling {
         1 << self.doublings
     }
 
+    /// Bits of a sample beyond those of a conversion.
+    fn more_bits(&self) -> u8 {
+        self.doublings - self.shift
+    }
+
+    /// Highest count of a sample.
+    pub fn full_scale(&self) -> u16 {
+        let counts = u32::from(self.full_scale) + 1;
+        ((counts << self.more_bits()) - 1) as u16
+    }
+
+    /// How the counts of conversions relate to displacement, where `sensing` is of samples.
+    pub fn of_conversions(&self, sensing: &SensingConfig) -> SensingConfig {
+        let counts = f32::from(1_u16 << self.more_bits());
+        SensingConfig {
+            resolution: sensing.resolution * counts,
+            zero_count: sensing.zero_count / counts,
+            full_scale: self.full_scale,
+            ..*sensing
+        }
+    }
+
     /// Takes a conversion, before which so many were `lost`. If it is the last one of a sample of which none is lost: that
-    /// sample's counts and valid bits. A count is the mean of those of a channel, saturated if one of them was. A channel is valid
-    /// if it was in each conversion.
+    /// sample's counts and valid bits. A channel is valid if it was in each conversion, and saturated if it was in one.
     // Not inlined: the firmware's own code is compiled for size.
     #[inline(never)]
     pub fn take(
@@ -72,8 +105,8 @@ impl Oversampling {
         state.past = past + 1;
         if past == 0 {
             (state.is_whole, state.valid, state.is_saturated) = (true, u8::MAX, false);
-            // Half a count, so that the mean is rounded.
-            state.sums = [(1 << self.doublings) >> 1; CHANNELS];
+            // Half a count of the sample, so that it is rounded.
+            state.sums = [(1 << self.shift) >> 1; CHANNELS];
         }
         state.is_whole &= past == 0 || lost == 0;
         state.valid &= conversion.valid;
@@ -89,7 +122,7 @@ impl Oversampling {
         if past != last || !state.is_whole {
             return None;
         }
-        let mut counts = state.sums.map(|sum| (sum >> self.doublings) as u16);
+        let mut counts = state.sums.map(|sum| (sum >> self.shift) as u16);
         if state.is_saturated {
             let saturated = counts.iter_mut().zip(state.saturated);
             saturated.for_each(|(count, it)| *count = it.unwrap_or(*count));
@@ -103,8 +136,10 @@ impl Oversampling {
             (state.is_saturated, state.saturated) = (true, [None; CHANNELS]);
         }
         for (it, &count) in state.saturated.iter_mut().zip(&conversion.counts) {
-            if count == 0 || count >= self.full_scale {
-                *it = Some(count);
+            if count == 0 {
+                *it = Some(0);
+            } else if count >= self.full_scale {
+                *it = Some(self.full_scale());
             }
         }
     }
@@ -113,6 +148,8 @@ impl Oversampling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensing::Sensing;
+    use crate::sensing::tests::CONFIG;
     use std::vec::Vec;
 
     extern crate std;
@@ -129,13 +166,18 @@ mod tests {
         }
     }
 
+    fn oversampling(conversions: u16, full_scale: u16) -> Oversampling {
+        let rate = f32::from(conversions) * 1_000.0;
+        let converter = ConverterConfig { rate, full_scale };
+        Oversampling::try_new(converter, 1_000.0).unwrap()
+    }
+
     /// Numbers and counts of the samples of these conversions, before each of which so many were lost.
     fn taken(
         conversions: u16,
         given: impl IntoIterator<Item = (Sample, u32)>,
     ) -> Vec<(u32, Sample)> {
-        let rate = 1_000.0;
-        let it = Oversampling::try_new(f32::from(conversions) * rate, rate, FULL_SCALE).unwrap();
+        let it = oversampling(conversions, FULL_SCALE);
         let mut state = OversamplingState::default();
         let take = |(conversion, lost): (Sample, u32)| {
             let (counts, valid) = it.take(&mut state, &conversion, lost)?;
@@ -158,19 +200,24 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_is_the_mean_of_its_conversions() {
+    fn a_sample_is_the_sum_of_its_conversions_as_far_as_it_has_bits() {
         let given = [
-            [10, 100, 0xfff0, 7],
-            [12, 101, 0xfffe, 7],
-            [17, 103, 0xfffd, 7],
-            [19, 103, 0xfffe, 8],
+            [10, 100, 0x3ff0, 7],
+            [12, 101, 0x3ffe, 7],
+            [17, 103, 0x3ffd, 7],
+            [19, 103, 0x3ffe, 8],
         ];
-        let it = Oversampling::try_new(40e3, 10e3, u16::MAX).unwrap();
-        let mut state = OversamplingState::default();
-        let samples = given.map(|given| it.take(&mut state, &of(given), 0));
-        // Of 14.5, 101.75, 65 530.25 and 7.25.
-        let mean = ([15, 102, 0xfffa, 7], 0b1111);
-        assert_eq!(samples, [None, None, None, Some(mean)]);
+        let last = |full_scale| {
+            let it = oversampling(4, full_scale);
+            let mut state = OversamplingState::default();
+            let samples = given.map(|given| it.take(&mut state, &of(given), 0));
+            assert_eq!(&samples[..3], [None; 3]);
+            (it.full_scale(), samples[3].unwrap())
+        };
+        assert_eq!(last(0x3fff), (0xffff, ([58, 407, 0xffe9, 29], 0b1111)));
+        // Half of these, and a quarter, rounded.
+        assert_eq!(last(0x7fff), (0xffff, ([29, 204, 0x7ff5, 15], 0b1111)));
+        assert_eq!(last(0xffff), (0xffff, ([15, 102, 0x3ffa, 7], 0b1111)));
     }
 
     #[test]
@@ -186,7 +233,23 @@ mod tests {
             panic!("{samples:?}");
         };
         assert_eq!(sample.valid, 0b1011);
-        assert_eq!(sample.counts, [2_001, 0, 2_001, FULL_SCALE]);
+        assert_eq!(sample.counts, [8_004, 0, 8_004, 16_383]);
+    }
+
+    /// The same places, from a sample and from its conversions.
+    #[test]
+    fn conversions_and_samples_show_the_same_place() {
+        let it = oversampling(2, FULL_SCALE);
+        let sensing = SensingConfig {
+            zero_count: 4_100.0,
+            full_scale: it.full_scale(),
+            ..CONFIG
+        };
+        let place =
+            |config: &SensingConfig, counts| Sensing::try_new(config).unwrap().planes(&of(counts));
+        let conversion = place(&it.of_conversions(&sensing), [2_100, 2_200, 1_900, 2_050]);
+        let sample = place(&sensing, [4_200, 4_400, 3_800, 4_100]);
+        assert_eq!(conversion, sample);
     }
 
     /// Sample by sample, whichever conversions are lost.
@@ -211,9 +274,10 @@ mod tests {
                 let numbers: Vec<u32> = samples.iter().map(|it| it.0).collect();
                 assert_eq!(numbers, (0..30).filter(whole).collect::<Vec<_>>());
                 for (number, sample) in samples {
-                    // Of whole numbers in a row, and rounded up.
-                    let mean = conversions * number + 1 + conversions / 2;
-                    assert_eq!(u32::from(sample.counts[0]), mean);
+                    // Of whole numbers in a row.
+                    let first = conversions * number + 1;
+                    let sum = conversions * first + conversions * (conversions - 1) / 2;
+                    assert_eq!(u32::from(sample.counts[0]), sum);
                 }
             }
         }
@@ -221,9 +285,13 @@ mod tests {
 
     #[test]
     fn other_rates_are_refused() {
+        let converter = ConverterConfig {
+            rate: 20e3,
+            full_scale: FULL_SCALE,
+        };
         let conversions = |sample_rate| {
             Some(
-                Oversampling::try_new(20e3, sample_rate, 4_095)
+                Oversampling::try_new(converter, sample_rate)
                     .ok()?
                     .conversions(),
             )

@@ -1,4 +1,4 @@
-//! A board whose samples are the mean of some conversions: the image gives the desktop's bits of these means.
+//! A board whose samples are the sum of some conversions: the image gives the desktop's bits of these sums.
 
 use std::fs;
 use std::time::Duration;
@@ -39,12 +39,15 @@ fn conversion(number: u64) -> Sample {
     it
 }
 
-/// By its definition.
-fn mean(conversions: &[Sample]) -> Sample {
+/// By its definition, for conversions of 12 bit.
+fn sum(conversions: &[Sample]) -> Sample {
     let counts = [0, 1, 2, 3].map(|channel: usize| {
         let all = || conversions.iter().map(|it| it.counts[channel]);
-        let mean = all().map(f64::from).sum::<f64>() / conversions.len() as f64;
-        if all().any(|it| it == 4_095) { 4_095 } else { (mean + 0.5).floor() as u16 }
+        if all().any(|it| it == 4_095) {
+            4_096 * conversions.len() as u16 - 1
+        } else {
+            all().sum()
+        }
     });
     let valid = conversions.iter().fold(0b1111, |valid, it| valid & it.valid);
     let last = conversions.last().expect("a conversion");
@@ -52,11 +55,15 @@ fn mean(conversions: &[Sample]) -> Sample {
 }
 
 #[test]
-fn the_mean_of_some_conversions_gives_the_same_bits() {
+fn the_sum_of_some_conversions_gives_the_same_bits() {
     let conversions: Vec<_> = (0..10_000).map(conversion).collect();
     for of_sample in [2, 4] {
         let mut slow = settings();
-        slow.monitor.detector.sample_rate = (RATE / of_sample as f64) as f32;
+        slow.monitor.detector.sample_rate /= of_sample as f32;
+        let sensing = &mut slow.monitor.sensing;
+        sensing.full_scale = 4_096 * of_sample as u16 - 1;
+        sensing.zero_count *= of_sample as f32;
+        sensing.resolution /= of_sample as f32;
         let folder = TempDir::new().expect("a folder");
         let at = folder.path();
         fs::write(at.join("settings"), config_block::encode(&slow)).expect("a file");
@@ -68,8 +75,8 @@ fn the_mean_of_some_conversions_gives_the_same_bits() {
         let answer = session.answer(Duration::from_secs(120));
         let (target, shown) = answer.unwrap_or_else(|error| panic!("{error}"));
 
-        let means = conversions.chunks(of_sample).map(mean);
-        let desktop = Target::Host.control(&slow.monitor, &Procedure::default(), means);
+        let sums = conversions.chunks(of_sample).map(sum);
+        let desktop = Target::Host.control(&slow.monitor, &Procedure::default(), sums);
         let (desktop, conduct) = desktop.unwrap_or_else(|failure| panic!("{failure:?}"));
         assert_eq!(target.notices, desktop.notices, "{of_sample}");
         assert_eq!(target.summary, desktop.summary, "{of_sample}");

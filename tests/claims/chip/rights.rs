@@ -263,10 +263,17 @@ fn without_a_whole_configuration_of_its_own_there_is_never_current() {
 fn a_configuration_for_another_board_never_gives_current() {
     let folder = TempDir::new().expect("a folder");
     let at = folder.path();
-    // Whole numbers of conversions make a sample.
-    for (rate, fits) in [(15e3, false), (40e3, false), (10e3, true), (20e3, true)] {
+    // 1, 2, 4, 8 or 16 conversions make a sample, of more bits.
+    for (rate, full_scale, fits) in [
+        (15e3, 4_095, false),
+        (40e3, 4_095, false),
+        (10e3, 4_095, false),
+        (10e3, 8_191, true),
+        (20e3, 4_095, true),
+    ] {
         let mut other = settings();
         other.monitor.detector.sample_rate = rate;
+        other.monitor.sensing.full_scale = full_scale;
         fs::write(at.join("settings"), config_block::encode(&other)).expect("a file");
         let (mut session, shown) = session(at, false, samples(0.5, |_| 0.0));
         assert_eq!(runs(&shown), fits, "{rate}");

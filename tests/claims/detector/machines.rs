@@ -12,7 +12,7 @@ const RIGID: [&str; 4] = ["rig", "rig-wide-gap", "rolling", "ball-bearing"];
 
 #[test]
 fn machines_fall_touch_and_whirl_as_the_reference_has_it() {
-    let machines = machine_runs::run("", DROPS, FIRST);
+    let machines = machine_runs::run("", DROPS, FIRST, 1);
     assert_eq!(machines.len(), 21);
     for it in &machines {
         println!("{it:?}");

@@ -22,7 +22,8 @@ use stm32f4 as _;
 
 use touchdown_core::event::{Notice, Notices};
 use touchdown_core::monitor::MonitorConfig;
-use touchdown_core::oversampling::Oversampling;
+use touchdown_core::oversampling::{ConverterConfig, Oversampling};
+use touchdown_core::sample::Sample;
 use touchdown_protocol::config_block::{self, Block};
 use touchdown_protocol::controller::{Faults, Shown};
 
@@ -131,13 +132,15 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
         (ring.split(&scene.config(), oversampling)).expect("a valid configuration");
     scene.play(|sample| {
         let sample = black_box(sample);
+        let counts = sample.counts.map(|it| it / oversampling.conversions());
+        let conversion = black_box(&Sample { counts, ..*sample });
         let ((), earlier) = counter.count(|| {
             for _ in 1..oversampling.conversions() {
-                black_box(intake.take((*sample).into(), 0));
+                black_box(intake.take((*conversion).into(), 0));
             }
         });
         // The last one puts the sample into the ring.
-        let (_, on_top) = counter.count(|| intake.take((*sample).into(), 0));
+        let (_, on_top) = counter.count(|| intake.take((*conversion).into(), 0));
         black_box(waiting.pop());
         let (monitor, state) = app.monitor();
         let (places, guard) = counter.count(|| monitor.guard(state, sample));
@@ -185,8 +188,11 @@ fn recorder<'m>(scene: &Scene, samples: &'m mut recorder::Memory) -> Recorder<'m
 
 /// That of the chip.
 fn oversampling(config: &MonitorConfig) -> Oversampling {
-    let (rate, full_scale) = (config.detector.sample_rate, config.sensing.full_scale);
-    Oversampling::try_new(CONVERSION_RATE_HZ as f32, rate, full_scale).expect("a whole number")
+    let converter = ConverterConfig {
+        rate: CONVERSION_RATE_HZ as f32,
+        full_scale: 4_095,
+    };
+    Oversampling::try_new(converter, config.detector.sample_rate).expect("a power of two")
 }
 
 #[inline(never)]

@@ -72,10 +72,10 @@ impl Fault {
         let count = &mut sample.counts[self.channel];
         match self.kind {
             _ if since >= self.length => {}
-            1 => *count = 2_048,
+            1 => *count = 4_096,
             2 => sample.valid &= !(1 << self.channel),
-            3 => *count = 4_095,
-            _ => *count = count.wrapping_add((since / 4) as u16).min(4_095),
+            3 => *count = 8_191,
+            _ => *count = count.wrapping_add((since / 2) as u16).min(8_191),
         }
     }
 }
@@ -176,11 +176,11 @@ pub(super) const SCENES: [Scene; 14] = [
         name: "sensors fail while floating",
         samples: 7_000,
         fail: |at, sample| match at {
-            2_000..3_000 => sample.counts[0] = 2_048,
+            2_000..3_000 => sample.counts[0] = 4_096,
             3_500..3_750 => sample.valid &= 0b1101,
-            4_000..4_500 => sample.counts[2] = 4_095,
-            5_000..5_500 if at % 25 < 2 => sample.counts[3] = 3_500,
-            6_000..6_500 => sample.counts[1] = sample.counts[1].wrapping_add((at / 4) as u16),
+            4_000..4_500 => sample.counts[2] = 8_191,
+            5_000..5_500 if at % 25 < 2 => sample.counts[3] = 7_000,
+            6_000..6_500 => sample.counts[1] = sample.counts[1].wrapping_add((at / 2) as u16),
             _ => {}
         },
         ..TURNING
@@ -189,7 +189,7 @@ pub(super) const SCENES: [Scene; 14] = [
         name: "sensors fail in a drop",
         fail: |at, sample| match at {
             2_950.. if at % 350 < 15 => sample.valid &= 0b1011,
-            4_000.. => sample.counts[0] = 2_048,
+            4_000.. => sample.counts[0] = 4_096,
             _ => {}
         },
         ..DROP
@@ -301,7 +301,7 @@ impl Scene {
                 };
                 for ((count, seen), runout) in pair.iter_mut().zip(seen).zip(runout) {
                     let shown = seen + runout + self.noise * noise.next();
-                    *count = (2_048.5 + shown * (4_096.0 / 2_000e-6)) as u16;
+                    *count = (4_096.5 + shown * (8_192.0 / 2_000e-6)) as u16;
                 }
             }
             let turned = (0.1 * at as f32) as u16;

@@ -20,6 +20,7 @@ use semihosting::process::exit;
 use stm32f4::stm32f405::{Interrupt, Peripherals, TIM2};
 use touchdown_core::event::Notice;
 use touchdown_core::monitor::Fingerprint;
+use touchdown_core::oversampling::ConverterConfig;
 use touchdown_protocol::config_block::BlockError;
 use touchdown_protocol::controller::Shown;
 use touchdown_protocol::wire::{self, Record, ReplayHead, Switching};
@@ -177,10 +178,13 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let mut files = Files::open()?;
     let head = files.replay.head().ok_or(Failure::Replay)?;
     // Those of a board that gives the samples of this configuration.
-    let abilities = Abilities {
-        conversion_rate: head.config.detector.sample_rate,
-        cycles: f32::INFINITY,
+    let converter = ConverterConfig {
+        rate: head.config.detector.sample_rate,
         full_scale: head.config.sensing.full_scale,
+    };
+    let abilities = Abilities {
+        converter,
+        cycles: f32::INFINITY,
         tachometers: head.config.tachometers.is_some(),
     };
     let (block, settings, found) = power_on(&head, files.settings.as_ref()).check(&abilities);
@@ -204,7 +208,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         tick.app.assume_lift();
     }
     TICK.put(tick);
-    let (wire, line) = line::open(chip.USART1, abilities.conversion_rate);
+    let (wire, line) = line::open(chip.USART1, converter.rate);
     SAMPLING.put(Sampling {
         timer: chip.TIM2,
         replay: files.replay,
@@ -214,7 +218,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
         given: 0,
         in_real_time: head.in_real_time,
     });
-    SAMPLING.with(|it| start_timer(&it.timer, abilities.conversion_rate));
+    SAMPLING.with(|it| start_timer(&it.timer, converter.rate));
     held::unmask(&mut core, Interrupt::TIM2);
     let platform = EmulatorPlatform {
         line,

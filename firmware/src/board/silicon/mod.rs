@@ -16,6 +16,7 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::{DWT, SCB};
 use defmt::error;
 use embedded_hal::delay::DelayNs;
+use touchdown_core::oversampling::ConverterConfig;
 use touchdown_core::sample::{Sample, TACHOMETERS};
 use touchdown_protocol::config_block::Settings;
 use touchdown_protocol::controller::{Faults, Outputs, Shown};
@@ -77,9 +78,11 @@ pub trait Chip: ConfigFlash + Sized + 'static {
     const FULL_SCALE: u16;
     /// What a configuration has to fit. No pin takes the pulses of ring and cage.
     const ABILITIES: Abilities = Abilities {
-        conversion_rate: CONVERSION_RATE_HZ as f32,
+        converter: ConverterConfig {
+            rate: CONVERSION_RATE_HZ as f32,
+            full_scale: Self::FULL_SCALE,
+        },
         cycles: (Self::MHZ * 1_000_000 / CONVERSION_RATE_HZ) as f32,
-        full_scale: Self::FULL_SCALE,
         tachometers: false,
     };
 
