@@ -133,7 +133,8 @@ fn parts(counter: &Counter, scene: &Scene, memory: &mut Memory) -> [Tally; PARTS
     scene.play(|sample| {
         let sample = black_box(sample);
         let counts = sample.counts.map(|it| it / oversampling.conversions());
-        let conversion = black_box(&Sample { counts, ..*sample });
+        let conversion = Sample { counts, ..*sample };
+        let conversion = black_box(&conversion);
         let ((), earlier) = counter.count(|| {
             for _ in 1..oversampling.conversions() {
                 black_box(intake.take((*conversion).into(), 0));
