@@ -14,7 +14,7 @@ use crate::detect::track::{Ballistic, Pull, Track};
 use crate::event::Moment;
 use crate::vector::{direction, length, less};
 use core::f32::consts::TAU;
-use touchdown_rotor::real::sqrt;
+use touchdown_rotor::real::{ln, sqrt};
 
 /// Velocity, m/s, that nothing is known of: well above any that a clearance lets a rotor fall with.
 pub(crate) const UNKNOWN_SPEED: f32 = 0.3;
@@ -32,7 +32,7 @@ const PULL_AT_WALL: f32 = 10.0;
 /// Standard deviations by which a rotor is clear of the wall where it lay before.
 const CLEAR_OF_WALL: f32 = 3.0;
 
-/// Mean of the impact test's statistic in white noise, as the test below measures it.
+/// Mean of the impact test's statistic in white noise with 16 instants, as the test below measures it.
 const WHITE_LEVEL: f32 = 0.6;
 /// Part of the arming time in which the loudness of the sensors is learnt.
 const LISTEN: f32 = 0.25;
@@ -72,6 +72,8 @@ pub(crate) struct FlightTest {
     per_horizon: f32,
     /// Samples near the wall, without impact, that no such bounce of that height lasts.
     dwell: u32,
+    /// Statistic of a bank of 16 instants in white noise over that of this one: they grow as the logarithm of their number.
+    as_of_sixteen: f32,
     listen_samples: f32,
     /// Spin of one turn in a fall through the clearance, rad/s.
     turn_in_fall: f32,
@@ -202,10 +204,10 @@ impl FlightTest {
         // A bounce of height h lasts 2 sqrt(2 h/g); twice that, so that one that has just begun ends.
         let slowest = machine.gravity.max(1.0);
         let tolerance = tuning.wall_tolerance * machine.clearance;
+        let jumps = JumpTest::new(tuning, config.sample_rate, threshold);
         let longest_bounce = 2.0 * sqrt(2.0 * tolerance / slowest);
         Self {
             ballistic: Ballistic::new(config.sample_rate, tuning.flight_error),
-            jumps: JumpTest::new(tuning, config.sample_rate, threshold),
             machine,
             told_pull: told_pull(&machine),
             told: ToldWall {
@@ -219,6 +221,8 @@ impl FlightTest {
             slowest,
             per_horizon: 1.0 / tuning.impact_horizon,
             dwell: (2.0 * longest_bounce * config.sample_rate) as u32,
+            as_of_sixteen: ln(16.0) / ln(jumps.instants as f32),
+            jumps,
             listen_samples: LISTEN * tuning.arming_time * config.sample_rate,
             turn_in_fall: TAU * sqrt(0.5 * slowest / machine.clearance),
         }
@@ -357,7 +361,8 @@ impl FlightTest {
         let innovation = (self.ballistic).correct(&mut flight.track, position, variance);
         self.jumps.update(&mut flight.bank, &innovation, [0.0, 1.0]);
         listener.count += 1.0;
-        listener.level += (flight.bank.statistic - listener.level) / listener.count;
+        let statistic = self.as_of_sixteen * flight.bank.statistic;
+        listener.level += (statistic - listener.level) / listener.count;
         listener.is_known = listener.count >= self.listen_samples;
     }
 

@@ -7,6 +7,8 @@
 use crate::config::{MOST_INSTANTS, Tuning};
 use crate::detect::track::{Innovation, Jump};
 
+/// Instants that are enough where the horizon has fewer samples than the bank has instants.
+const ENOUGH: usize = 8;
 /// Standard deviation of a value that lies anywhere in a span of 1.
 const UNIFORM: f32 = 0.288_675_13;
 /// Instants of the bank between the likeliest and that which dates it, at most.
@@ -26,7 +28,7 @@ const BEGUN: f32 = 0.3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JumpTest {
     period: f32,
-    instants: usize,
+    pub(crate) instants: usize,
     /// Samples from one to the next.
     stride: u16,
     threshold: f32,
@@ -124,9 +126,10 @@ impl Guess {
 impl JumpTest {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, threshold: f32) -> Self {
         let horizon = tuning.impact_horizon * sample_rate;
+        let samples = (horizon + 0.5) as usize;
         Self {
             period: 1.0 / sample_rate,
-            instants: usize::from(tuning.impact_instants),
+            instants: usize::from(tuning.impact_instants).min(samples.max(ENOUGH)),
             stride: (horizon / f32::from(tuning.impact_instants)).max(1.0) as u16,
             threshold,
         }

@@ -24,7 +24,7 @@ const CLIP: f32 = 25.0;
 pub(crate) const HELD: u16 = 4;
 /// Part of the repeats that noise never gives which a count that stops moving at once, as by an impact, does not show.
 /// Chosen: with 1 um of noise and 12 bits over 2 mm that is 4, once in 3000 samples.
-const STOPS: u16 = 4;
+const STOPS: u16 = 2;
 /// Standard deviations of the innovations that it would have gone in that time.
 const GONE: f32 = 6.0;
 /// Samples in a row, all sound, after which a lost channel is used again.
