@@ -273,7 +273,11 @@ fn a_configuration_for_another_board_never_gives_current() {
     ] {
         let mut other = settings();
         other.monitor.detector.sample_rate = rate;
-        other.monitor.sensing.full_scale = full_scale;
+        let sensing = &mut other.monitor.sensing;
+        let counts = (f32::from(full_scale) + 1.0) / 4_096.0;
+        sensing.full_scale = full_scale;
+        sensing.zero_count *= counts;
+        sensing.resolution /= counts;
         fs::write(at.join("settings"), config_block::encode(&other)).expect("a file");
         let (mut session, shown) = session(at, false, samples(0.5, |_| 0.0));
         assert_eq!(runs(&shown), fits, "{rate}");
