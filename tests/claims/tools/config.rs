@@ -112,12 +112,14 @@ fn a_configuration_is_saved_edited_sent_back_and_kept_and_refused_in_a_drop() {
     until("power", || rig.starts() == 3);
     assert_eq!(shown(at, &port).1, now);
 
-    // This board's samples come at one rate.
-    let rate = edited.replace("sample_rate_hz = 20000.0", "sample_rate_hz = 10000.0");
-    fs::write(at.join("rate.toml"), rate).expect("a file");
-    config(at, &port, &["--set", "rate.toml"])
-        .code(1)
-        .stderr(contains("refuses: sample_rate"));
+    // This board converts at one rate: no whole number of conversions, and two without their bit.
+    for (hz, why) in [("15000.0", "sample_rate"), ("10000.0", "full_scale")] {
+        let rate = edited.replace("sample_rate_hz = 20000.0", &format!("sample_rate_hz = {hz}"));
+        fs::write(at.join("rate.toml"), rate).expect("a file");
+        config(at, &port, &["--set", "rate.toml"])
+            .code(1)
+            .stderr(contains(format!("refuses: {why}")));
+    }
 
     rig.order(Order::Lift);
     until_mode(&rig, Mode::Watching);

@@ -22,8 +22,8 @@ const WARM_UP: u16 = 64;
 const CLIP: f32 = 25.0;
 /// Samples in a row that are filled in from the prediction. A fault that lasts longer is no spike.
 pub(crate) const HELD: u16 = 4;
-/// Part of the repeats that noise never gives which a count that stops moving at once, as by an impact, does not show.
-/// Chosen: with 1 um of noise and 12 bits over 2 mm that is 4, once in 3000 samples.
+/// Part of the repeats that noise never gives which a count that stops moving at once, as by an impact, does not show: with
+/// 1 um of noise and 12 bits over 2 mm that is 8. After half of them a quiet rotor that an impact stops is taken for a stuck channel.
 const STOPS: u16 = 2;
 /// Standard deviations of the innovations that it would have gone in that time.
 const GONE: f32 = 6.0;
