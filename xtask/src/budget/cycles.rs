@@ -429,7 +429,7 @@ mod tests {
             window_of(10),
             window_of(10),
         ];
-        let parts: Vec<_> = (0..=9).map(|k| window_of(100 * k)).collect();
+        let parts: Vec<_> = (1..=10).map(|k| window_of(100 * k)).collect();
         let stream = |is_typical, ticks| PlayedStream {
             is_typical,
             ticks,
@@ -438,9 +438,10 @@ mod tests {
         let it = modelled(&[stream(true, &orbit), stream(false, &drop)]);
         assert_eq!((it.typical.lower, it.typical.modelled), (5_999, 6_000));
         assert_eq!((it.worst.modelled, it.worst.upper), (30_000, 60_000));
-        assert_eq!(it.top_priority_worst.modelled, 172);
-        assert_eq!(it.parts[4].worst_modelled, 400);
-        // 30 244 cycles are 3.6 periods, and three samples wait.
+        assert_eq!(it.top_priority_worst.modelled, 272);
+        assert_eq!(it.parts[4].worst_modelled, 500);
+        // 30 000 of the tick, 272, 172 of the earlier conversion and 72 are 1.8 periods, and a sample waits.
+        assert_eq!(it.mean_10_ms_modelled, 0);
         assert_eq!(it.samples_lost_modelled, 0);
         assert_eq!((it.streams, it.ticks), (2, 6));
     }
