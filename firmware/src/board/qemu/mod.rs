@@ -178,10 +178,7 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     let mut files = Files::open()?;
     let head = files.replay.head().ok_or(Failure::Replay)?;
     // Those of a board that gives the samples of this configuration.
-    let converter = ConverterConfig {
-        rate: head.config.detector.sample_rate,
-        full_scale: head.config.sensing.full_scale,
-    };
+    let converter = converter(&head);
     let abilities = Abilities {
         converter,
         cycles: f32::INFINITY,
@@ -232,15 +229,21 @@ fn start(memory: &'static mut Memory) -> Result<(MainLoop, EmulatorPlatform), Fa
     Ok((below, platform))
 }
 
-/// An interrupt each sample, at so many a second.
-fn start_timer(timer: &TIM2, sample_rate: f32) {
+/// Whose conversions the replay has.
+fn converter(head: &ReplayHead) -> ConverterConfig {
+    ConverterConfig {
+        rate: head.config.detector.sample_rate,
+        full_scale: head.config.sensing.full_scale,
+    }
+}
+
+/// An interrupt each conversion, at so many a second.
+fn start_timer(timer: &TIM2, rate: f32) {
     timer.cr1().write(|w| w.cen().enabled());
     timer.dier().write(|w| w.uie().set_bit());
     // QEMU 7.2 adds its time of the last update to each period, which is 0 as long as there was none; the last of these
     // starts it (hw/timer/stm32f2xx_timer.c).
-    timer
-        .arr()
-        .write(|w| w.arr().set((TIMER_HZ / sample_rate) as u32));
+    timer.arr().write(|w| w.arr().set((TIMER_HZ / rate) as u32));
 }
 
 /// What is found: the configuration of the replay where none is stored.
