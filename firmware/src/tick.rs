@@ -7,7 +7,7 @@ use touchdown_protocol::controller::{Cause, Outputs, Shown};
 
 use crate::app::App;
 use crate::board::Board;
-use crate::intake::{RING, Waiting};
+use crate::intake::Waiting;
 use crate::recorder::Recorder;
 
 /// Missed samples in a row whose time goes on in the monitor: 1 ms at 20 kHz, 2 ms at 10 kHz. It trips after 1 ms. Those beyond are
@@ -17,7 +17,7 @@ const MOST_MISSED: u32 = 20;
 /// take all the time.
 const IN_A_ROW: u32 = 32;
 /// Sample periods that they wait at most. A main loop that hangs stops no tick.
-const LONGEST_WAIT: u32 = RING as u32 / 2;
+const LONGEST_WAIT: u32 = 8;
 /// Notices on their way to log and link. If it is full they are lost and counted; events are numbered, so a gap shows.
 pub type Outbox = Deque<Notice, 64>;
 

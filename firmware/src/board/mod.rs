@@ -54,7 +54,7 @@ impl Abilities {
         let Ok(oversampling) = self.oversampling(config) else {
             return Some("sample_rate");
         };
-        if f32::from(oversampling.conversions()) * self.cycles < cost::BUSIEST {
+        if f32::from(oversampling.conversions()) * self.cycles < cost::LEAST {
             Some("sample_rate")
         } else if config.sensing.full_scale != oversampling.full_scale() {
             Some("full_scale")

@@ -20,7 +20,7 @@ const CONVERSIONS: u64 = 2;
 const RATES: [u64; 3] = [20_000, 25_000, 50_000];
 const PERIOD: u64 = CONVERSIONS * CLOCK / RATES[0];
 /// Samples that can wait: `firmware/src/intake.rs`.
-const RING: usize = 15;
+const RING: usize = 31;
 /// Samples in a row, then a turn of the main loop: `firmware/src/tick.rs`.
 const IN_A_ROW: u32 = 32;
 /// Samples in 10 ms.
