@@ -1,7 +1,7 @@
 //! What settings cost: cycles of a Cortex-M4F, as modelled. How they were measured: docs/build/timing.md.
 
-/// Of a sample, with up to [`MOST_INSTANTS`]: with so many no sample of the streams that were searched is lost, as the ring takes what
-/// the ticks of a drop take longer for a while.
+/// Of a sample, with up to [`MOST_INSTANTS`]: with so many no stream of the budget loses a sample, as the ring takes what the
+/// ticks of a drop take longer for a while.
 pub const LEAST: f32 = 16_800.0;
 
 /// Most instants in the bank of the release and in that of impacts for which it was measured. More date an impact no better at
