@@ -19,7 +19,7 @@ const IN_A_ROW: u32 = 32;
 /// Sample periods that they wait at most. A main loop that hangs stops no tick.
 const LONGEST_WAIT: u32 = 8;
 /// Notices on their way to log and link. If it is full they are lost and counted; events are numbered, so a gap shows.
-pub type Outbox = Deque<Notice, 64>;
+pub type Outbox = Deque<Notice, 48>;
 
 /// One sample, before which `lost` were lost. What the monitor said to it is left in `notices`.
 #[inline]
