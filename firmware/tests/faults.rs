@@ -436,7 +436,7 @@ fn lost_sample_puts_out_the_lamp_at_once_and_stays_latched() {
 }
 
 #[test]
-fn overload_trips_after_20_lost_samples() {
+fn overload_trips_after_1_ms_of_lost_samples() {
     let mut bench = Bench::watching();
     let sample = bench.at([0.0; 2]);
     let ticks = ticks_until(BLIND, || bench.take(&sample, 1) == 0);

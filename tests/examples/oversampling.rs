@@ -1,21 +1,15 @@
 //! What it costs that a sample is the sum of some conversions:
 //! `cargo run --release -p touchdown-tests --example oversampling -- --runs 300`.
 
-use clap::Parser;
 use touchdown_tests::family::{Campaign, Place};
 use touchdown_tests::oversampling_runs::{self, Row};
 
-/// Drops the rig, and shows the monitor sums of 1, 2 and 4 conversions of the same sensors
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    campaign: Campaign,
-}
-
 fn main() {
-    let Arguments { campaign } = Arguments::parse();
+    let campaign = Campaign::of_command_line(
+        "Drops the rig, and shows the monitor sums of 1, 2 and 4 conversions of the same sensors",
+    );
     let asked = &campaign.asked;
-    let rows = oversampling_runs::run(asked.runs, asked.first_seed);
+    let rows = oversampling_runs::run(&asked.only, asked.runs, asked.first_seed);
     let place = Place {
         document: "docs/build/timing.md",
         table: "timing-oversampling",

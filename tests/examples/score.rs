@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use clap::Parser;
 use serde_json::Value;
 use touchdown_core::detect::Tuning;
 use touchdown_lab::score::{self, GROUPS, Plan, Row, Score};
@@ -12,15 +11,10 @@ use touchdown_tests::family::{Campaign, Place};
 /// Levitation of each case for each run that is asked for, s.
 const SECONDS: f64 = 60.0;
 
-/// Measures the detector as `touchdown score` does; a run is a drop of each case and a minute of levitation
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    campaign: Campaign,
-}
-
 fn main() {
-    let Arguments { campaign } = Arguments::parse();
+    let campaign = Campaign::of_command_line(
+        "Measures the detector as `touchdown score` does; a run is a drop of each case and a minute of levitation",
+    );
     let asked = &campaign.asked;
     let names = GROUPS.iter().map(|it| it.name);
     let plan = Plan {

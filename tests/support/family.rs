@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use clap::{CommandFactory, FromArgMatches, Parser};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -23,7 +24,7 @@ pub struct Asked {
 }
 
 /// What is asked of a campaign, and where its result goes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Parser)]
 pub struct Campaign {
     /// Which runs.
     #[command(flatten)]
@@ -50,6 +51,12 @@ pub struct Place {
 }
 
 impl Campaign {
+    /// What the command line asks, with no more options than these; `about` is for `--help`.
+    pub fn of_command_line(about: &'static str) -> Self {
+        let matches = Self::command().about(about).get_matches();
+        Self::from_arg_matches(&matches).unwrap_or_else(|why| why.exit())
+    }
+
     /// The same of `families`, which ends the program with status 1 where one failed.
     pub fn conclude(&self, families: &[Family], place: Place) {
         let failures: Vec<_> = families.iter().flat_map(|it| it.failures.clone()).collect();

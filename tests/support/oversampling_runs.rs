@@ -44,19 +44,23 @@ pub struct Row {
     pub contradicted: usize,
 }
 
-/// So many drops.
-pub fn run(drops: u64, first: u64) -> Vec<Row> {
+/// So many drops; of the rows those whose number of conversions contains `only`.
+pub fn run(only: &str, drops: u64, first: u64) -> Vec<Row> {
     let told = Scene::load("rig").expect("a built-in scene");
-    let seen: Vec<[Seen; CONVERSIONS.len()]> = (first..first + drops)
+    let of_sample = CONVERSIONS
+        .into_iter()
+        .filter(|it| it.to_string().contains(only));
+    let of_sample: Vec<u16> = of_sample.collect();
+    let seen: Vec<Vec<Seen>> = (first..first + drops)
         .into_par_iter()
         .filter_map(|number| {
             let mut scene = varied(&told, number);
             scene.run.seed = number;
-            drop(&scene, &told)
+            drop(&scene, &told, &of_sample)
         })
         .collect();
     let row = |(k, conversions): (usize, u16)| row(conversions, seen.iter().map(|it| &it[k]));
-    CONVERSIONS.into_iter().enumerate().map(row).collect()
+    of_sample.iter().copied().enumerate().map(row).collect()
 }
 
 /// Of a drop, times in s; infinite where nothing is told.
@@ -72,7 +76,7 @@ struct Seen {
 }
 
 /// None where the reference was given up.
-fn drop(scene: &Scene, told: &Scene) -> Option<[Seen; CONVERSIONS.len()]> {
+fn drop(scene: &Scene, told: &Scene, of_sample: &[u16]) -> Option<Vec<Seen>> {
     let rate = scene.run.sample_rate;
     let sensors = Sensors::try_new(&scene.sensors, rate).expect("valid sensors");
     let mut chain = sensors.start(scene.run.seed);
@@ -88,7 +92,7 @@ fn drop(scene: &Scene, told: &Scene) -> Option<[Seen; CONVERSIONS.len()]> {
         return None;
     }
     let truth = truth.finish().whole;
-    Some(CONVERSIONS.map(|of_sample| {
+    let seen = of_sample.iter().map(|&of_sample| {
         let mut oversampled = Oversampled::new(told.monitor_config(), of_sample);
         let config = oversampled.config;
         let samples = conversions.iter().filter_map(|it| oversampled.take(it));
@@ -120,7 +124,8 @@ fn drop(scene: &Scene, told: &Scene) -> Option<[Seen; CONVERSIONS.len()]> {
             contact: contact(&matches),
             contradicted: matches.false_events.len(),
         }
-    }))
+    });
+    Some(seen.collect())
 }
 
 /// From the begin of the last contact to the first that is told of it, s.

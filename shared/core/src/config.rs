@@ -8,6 +8,8 @@ use touchdown_rotor::scales::{not_negative, positive};
 pub const NEAREST_WALL: f32 = 0.38;
 /// Most instants that a test's bank has room for.
 pub(crate) const MOST_INSTANTS: usize = 32;
+/// Fewest instants that a test looks at.
+pub(crate) const FEWEST_INSTANTS: u8 = 4;
 
 /// The machine, as far as the detector needs it; SI.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -175,7 +177,7 @@ impl Tuning {
             ("release_instants", self.release_instants),
             ("impact_instants", self.impact_instants),
         ] {
-            if !(4..=MOST_INSTANTS as u8).contains(&instants) {
+            if !(FEWEST_INSTANTS..=MOST_INSTANTS as u8).contains(&instants) {
                 return Err(ConfigError::OutOfRange(name, "4 to 32"));
             }
         }

@@ -423,12 +423,8 @@ mod tests {
     #[test]
     fn figures_are_of_the_streams_and_the_interrupts_add_entry_and_exit() {
         let orbit = [window_of(5_000), window_of(7_000)];
-        let drop = [
-            window_of(30_000),
-            window_of(10),
-            window_of(10),
-            window_of(10),
-        ];
+        let mut drop = [window_of(10); SPAN];
+        drop[0] = window_of(30_000);
         let parts: Vec<_> = (1..=10).map(|k| window_of(100 * k)).collect();
         let stream = |is_typical, ticks| PlayedStream {
             is_typical,
@@ -440,10 +436,11 @@ mod tests {
         assert_eq!((it.worst.modelled, it.worst.upper), (30_000, 60_000));
         assert_eq!(it.top_priority_worst.modelled, 272);
         assert_eq!(it.parts[4].worst_modelled, 500);
-        // 30 000 of the tick, 272, 172 of the earlier conversion and 72 are 1.8 periods, and a sample waits.
-        assert_eq!(it.mean_10_ms_modelled, 0);
+        // Besides the ticks each sample takes 272 on top, 172 of the earlier conversion and 72 of its tick's interrupt.
+        assert_eq!(it.mean_10_ms_modelled, (30_000 + 99 * 10) / 100 + 516);
+        // The first sample takes 1.8 periods, and the next ones wait.
         assert_eq!(it.samples_lost_modelled, 0);
-        assert_eq!((it.streams, it.ticks), (2, 6));
+        assert_eq!((it.streams, it.ticks), (2, 102));
     }
 
     #[test]

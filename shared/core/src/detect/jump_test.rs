@@ -4,11 +4,9 @@
 //! For each instant the bank follows what a unit jump there would have done to the filter's error,
 //! so the test knows that the filter has begun to follow the jump.
 
-use crate::config::{MOST_INSTANTS, Tuning};
+use crate::config::{FEWEST_INSTANTS, MOST_INSTANTS, Tuning};
 use crate::detect::track::{Innovation, Jump};
 
-/// Instants that are enough where the horizon has fewer samples than the bank has instants.
-const ENOUGH: usize = 8;
 /// Standard deviation of a value that lies anywhere in a span of 1.
 const UNIFORM: f32 = 0.288_675_13;
 /// Instants of the bank between the likeliest and that which dates it, at most.
@@ -126,10 +124,10 @@ impl Guess {
 impl JumpTest {
     pub(crate) fn new(tuning: &Tuning, sample_rate: f32, threshold: f32) -> Self {
         let horizon = tuning.impact_horizon * sample_rate;
-        let samples = (horizon + 0.5) as usize;
+        let samples = ((horizon + 0.5) as usize).max(FEWEST_INSTANTS.into());
         Self {
             period: 1.0 / sample_rate,
-            instants: usize::from(tuning.impact_instants).min(samples.max(ENOUGH)),
+            instants: usize::from(tuning.impact_instants).min(samples),
             stride: (horizon / f32::from(tuning.impact_instants)).max(1.0) as u16,
             threshold,
         }
