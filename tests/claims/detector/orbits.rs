@@ -148,6 +148,26 @@ fn a_fall_while_the_speed_changes_is_declared_near_the_bound() {
     }
 }
 
+/// Orbits of up to 0.4 of the clearance are no lift from the wall: machines run with them for long (ISO 14839-2, up to zone B).
+#[test]
+fn a_fall_out_of_a_wide_orbit_is_found() {
+    for (part, frequency) in [(0.2, 100.0), (0.3, 50.0), (0.4, 25.0)] {
+        let case = Case {
+            rate: 20_000.0,
+            frequency,
+            sweep: 0.0,
+            radius: part * 300e-6,
+            runout: 0.0,
+            harmonic: 1,
+            speed: false,
+        };
+        for seed in 0..9 {
+            let (latency, early) = case.latency(seed);
+            assert!(latency.is_some() && early == 0, "{part} {seed} {latency:?}");
+        }
+    }
+}
+
 /// Falls confirmed of a rotor that the magnets hold, in an orbit of this frequency (Hz) that grows to the wall in so long (s) and
 /// goes round there; the shaft turns `times` as fast.
 fn confirmed_of_a_rub(frequency: f64, times: f64, growth: f64, seed: u64) -> usize {

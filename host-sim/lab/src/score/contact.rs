@@ -170,8 +170,8 @@ fn seen(case: Case, drop: &Drop) -> Result<Seen, Failure> {
     Ok(Seen { errors, phases })
 }
 
-/// Of the first contact, where there is one.
-fn contact_error(watched: &Watched) -> Option<f64> {
+/// Error of the first contact's onset, s, where there is one; infinite if it was missed.
+pub fn contact_error(watched: &Watched) -> Option<f64> {
     let truth = watched.truth.contact_starts.first()?;
     let contact = [EventKind::Sliding, EventKind::Rolling];
     let mut events = watched.detection.events.iter();

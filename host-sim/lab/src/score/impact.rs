@@ -10,6 +10,7 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{LEAD, Levitated, ORBIT};
+use super::watch::Watched;
 use super::{Drop, Findings, Named, Plan, Row, bound, campaign};
 use touchdown_base::evenly::in_disc;
 use touchdown_base::failure::Failure;
@@ -32,9 +33,9 @@ const LATE: f64 = 1.3;
 /// The bounce series of restitution 0.8 is over after 70 ms.
 pub const WATCHED: f64 = 0.12;
 /// Levitation where it orbits: 15 turns of the slowest.
-const ORBIT_LEAD: f64 = 0.5;
+pub const ORBIT_LEAD: f64 = 0.5;
 /// Slowest and fastest orbit, Hz.
-const TURNS: [f64; 2] = [30.0, 500.0];
+pub const TURNS: [f64; 2] = [30.0, 500.0];
 const FRICTIONS: [f64; 3] = [0.05, 0.1, 0.2];
 const SPINS: [f64; 2] = [1.0, -1.0];
 
@@ -127,7 +128,7 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
 
 /// What was seen of a drop's impacts that have to be found.
 #[derive(Clone, Debug, Default)]
-struct Seen {
+pub struct Impacts {
     /// All of them.
     impacts: usize,
     /// Others with such a jump, which cannot be told from lying on the wall, and how many of these were found.
@@ -142,44 +143,80 @@ struct Seen {
     invented: usize,
 }
 
-fn seen(case: &Case, drop: &Drop) -> Result<Seen, Failure> {
-    let watched = drop.watch()?;
-    let (truth, events) = (&watched.truth, &watched.detection.events);
-    let matches = match_events(truth, &watched.detection);
-    let false_events = matches.false_events.iter();
-    let variance = bound::variance(&drop.scene.sensors);
-    let mut seen = Seen {
-        invented: false_events
-            .filter(|it| events[**it].declared_s >= 0.0)
-            .count(),
-        ..Seen::default()
-    };
-    for (impact, found) in truth.impacts.iter().zip(matches.of_kind(EventKind::Impact)) {
-        let jump = drop.jump(impact);
-        if jump < JUMP {
-            continue;
-        }
-        if !bound::is_told(variance, case.rate, &flights(truth, impact, jump)) {
-            seen.hidden[0] += 1;
-            seen.hidden[1] += usize::from(found.detected.is_some());
-            continue;
-        }
-        seen.impacts += 1;
-        let (Some(index), Some(latency)) = (found.detected, found.latency_s) else {
-            continue;
+impl Impacts {
+    /// Of a drop.
+    pub fn of(drop: &Drop, watched: &Watched) -> Self {
+        let rate = drop.scene.run.sample_rate;
+        let (truth, events) = (&watched.truth, &watched.detection.events);
+        let matches = match_events(truth, &watched.detection);
+        let false_events = matches.false_events.iter();
+        let variance = bound::variance(&drop.scene.sensors);
+        let mut seen = Self {
+            invented: false_events
+                .filter(|it| events[**it].declared_s >= 0.0)
+                .count(),
+            ..Self::default()
         };
-        let onset = impact.state.time;
-        seen.dated
-            .push((events[index].onset_s - onset).abs() * case.rate);
-        let speed = events[index].normal_speed_m_s.unwrap_or(f64::NAN);
-        seen.measured
-            .push((speed / impact.normal_speed - 1.0).abs());
-        let next = watched.instants.iter().find(|it| it.time >= onset);
-        let first = next.map_or(0.0, |it| (it.time - onset) * case.rate);
-        let bound = bound::cusum(variance, case.rate, first, |t| jump * t);
-        seen.late.push(latency / bound);
+        for (impact, found) in truth.impacts.iter().zip(matches.of_kind(EventKind::Impact)) {
+            let jump = drop.jump(impact);
+            if jump < JUMP {
+                continue;
+            }
+            if !bound::is_told(variance, rate, &flights(truth, impact, jump)) {
+                seen.hidden[0] += 1;
+                seen.hidden[1] += usize::from(found.detected.is_some());
+                continue;
+            }
+            seen.impacts += 1;
+            let (Some(index), Some(latency)) = (found.detected, found.latency_s) else {
+                continue;
+            };
+            let onset = impact.state.time;
+            seen.dated
+                .push((events[index].onset_s - onset).abs() * rate);
+            let speed = events[index].normal_speed_m_s.unwrap_or(f64::NAN);
+            seen.measured
+                .push((speed / impact.normal_speed - 1.0).abs());
+            let next = watched.instants.iter().find(|it| it.time >= onset);
+            let first = next.map_or(0.0, |it| (it.time - onset) * rate);
+            let bound = bound::cusum(variance, rate, first, |t| jump * t);
+            seen.late.push(latency / bound);
+        }
+        seen
     }
-    Ok(seen)
+
+    /// The rows of a case, of all its drops.
+    pub fn rows(name: &str, seen: &[Self]) -> [Row; 6] {
+        let sum = |of: fn(&Self) -> usize| seen.iter().map(of).sum::<usize>();
+        let [impacts, invented] = [sum(|it| it.impacts), sum(|it| it.invented)];
+        let [hidden, others] = [sum(|it| it.hidden[0]), sum(|it| it.hidden[1])];
+        let [dated, measured] = [all(seen, |it| &it.dated), all(seen, |it| &it.measured)];
+        let late = all(seen, |it| &it.late);
+        let (found, drops) = (dated.len(), seen.len());
+        let mut note = format!("{found} of {impacts} in {drops} drops");
+        if hidden > 0 {
+            note += &format!("; {others} of {hidden} that noise hides");
+        }
+        let quantiles = |quantity, values: &[f64], p, target| {
+            Row::quantile_at_most(name, quantity, values, p, target)
+        };
+        [
+            Row::at_least(name, "found_share", share(found, impacts), FOUND)
+                .of(impacts)
+                .with("drops", drops)
+                .with("impacts", impacts)
+                .with("found", found)
+                .with("hidden", hidden)
+                .with("hidden_found", others)
+                .noted(note),
+            quantiles("onset_error_median_samples", &dated, 0.5, DATED[0]),
+            quantiles("onset_error_p999_samples", &dated, 0.999, DATED[1]),
+            quantiles("speed_error_p99", &measured, 0.99, MEASURED)
+                .with("speed_error_median", median(&measured)),
+            quantiles("ratio", &late, 0.5, LATE).with("ratio_p99", quantile(&late, 0.99)),
+            Row::at_most(name, "invented", invented as f64, 0.0).with("drops", drops),
+        ]
+    }
 }
 
 /// The flights before and after an impact that takes off the speed `jump`: with which speed they meet and leave the
@@ -203,13 +240,14 @@ fn flights(truth: &History, impact: &Impact, jump: f64) -> [[f64; 2]; 2] {
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let drops = campaign::map(plan, "impact", &cases, |case, mut random| {
-        seen(case, &case.drop(plan, &mut random)?)
+        let drop = case.drop(plan, &mut random)?;
+        Ok(Impacts::of(&drop, &drop.watch()?))
     })?;
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (cases, drops) in cases.chunks(JUDGED).zip(drops.chunks(JUDGED)) {
         let (name, seen) = (cases[0].name(), drops.concat());
-        rows.extend(judged(&name, &seen));
+        rows.extend(Impacts::rows(&name, &seen));
         curves.push(Curve::new(
             name,
             histogram(&all(&seen, |it| &it.late), 0.1, 5.0),
@@ -226,38 +264,6 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 }
 
 /// Of all drops.
-fn all(seen: &[Seen], of: fn(&Seen) -> &Vec<f64>) -> Vec<f64> {
+fn all(seen: &[Impacts], of: fn(&Impacts) -> &Vec<f64>) -> Vec<f64> {
     seen.iter().flat_map(of).copied().collect()
-}
-
-fn judged(name: &str, seen: &[Seen]) -> [Row; 6] {
-    let sum = |of: fn(&Seen) -> usize| seen.iter().map(of).sum::<usize>();
-    let [impacts, invented] = [sum(|it| it.impacts), sum(|it| it.invented)];
-    let [hidden, others] = [sum(|it| it.hidden[0]), sum(|it| it.hidden[1])];
-    let [dated, measured] = [all(seen, |it| &it.dated), all(seen, |it| &it.measured)];
-    let late = all(seen, |it| &it.late);
-    let (found, drops) = (dated.len(), seen.len());
-    let mut note = format!("{found} of {impacts} in {drops} drops");
-    if hidden > 0 {
-        note += &format!("; {others} of {hidden} that noise hides");
-    }
-    let quantiles = |quantity, values: &[f64], p, target| {
-        Row::quantile_at_most(name, quantity, values, p, target)
-    };
-    [
-        Row::at_least(name, "found_share", share(found, impacts), FOUND)
-            .of(impacts)
-            .with("drops", drops)
-            .with("impacts", impacts)
-            .with("found", found)
-            .with("hidden", hidden)
-            .with("hidden_found", others)
-            .noted(note),
-        quantiles("onset_error_median_samples", &dated, 0.5, DATED[0]),
-        quantiles("onset_error_p999_samples", &dated, 0.999, DATED[1]),
-        quantiles("speed_error_p99", &measured, 0.99, MEASURED)
-            .with("speed_error_median", median(&measured)),
-        quantiles("ratio", &late, 0.5, LATE).with("ratio_p99", quantile(&late, 0.99)),
-        Row::at_most(name, "invented", invented as f64, 0.0).with("drops", drops),
-    ]
 }

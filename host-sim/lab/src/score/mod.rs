@@ -12,6 +12,7 @@ mod fall;
 mod figure;
 pub mod forecast;
 pub mod forecast_drop;
+mod ideal;
 mod impact;
 mod levitated;
 mod listening;
@@ -78,6 +79,7 @@ macro_rules! groups {
 }
 
 groups! {
+    ideal: "random machines that are as told: all of a drop",
     fall: "free fall after levitation: latency against the bound",
     impact: "impacts at 1 um, two planes: found, dated, measured, invented",
     contact: "permanent contact, end of slip, lift-off, and phases over time",

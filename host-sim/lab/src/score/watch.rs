@@ -89,18 +89,20 @@ impl Drop {
         (number as f64 - self.levitated as f64 + self.first) / self.scene.run.sample_rate
     }
 
-    /// Ends the run where the whirl gets faster than 1000 turns/s, twenty samples a turn: the rigid laws
-    /// let it grow without bound.
+    /// Ends the run where the whirl gets faster than 1000 turns/s, or than a turn in twenty samples: the rigid laws let it grow
+    /// without bound.
     pub fn before_fast_whirl(mut self) -> Self {
         const FASTEST: f64 = 1e3;
+        const SAMPLES: f64 = 20.0;
         const LOOK: f64 = 1e-3;
+        let fastest = FASTEST.min(self.scene.run.sample_rate / SAMPLES);
         let scene = self.scene.clone();
         let mut truth = Truth::new(&scene);
         let (mut time, mut turns) = (0.0_f64, 0.0_f64);
         while time < scene.run.duration {
             let now = truth.advance(time).rotor.turns_in_contact;
             // A lift-off sets them back.
-            if now.abs() - turns.abs() > FASTEST * LOOK {
+            if now.abs() - turns.abs() > fastest * LOOK {
                 self.scene.run.duration = time;
                 break;
             }

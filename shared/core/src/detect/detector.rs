@@ -313,8 +313,11 @@ impl Detector {
             })
             .flatten();
         let home = state.levitation.mean;
-        if is_full && (self.phase_machine).is_lifted(state.blocks.newest_without_orbit(), home) {
-            return self.learn_again(state, writer);
+        if is_full {
+            let place = state.blocks.newest_without_orbit();
+            if self.phase_machine.is_lifted(place, home, before) {
+                return self.learn_again(state, writer);
+            }
         }
         let is_near = is_full && self.phase_machine.is_near(state.blocks.newest());
         state.off_wall |= is_full && !is_near;
@@ -509,7 +512,7 @@ impl Detector {
                 let far = [(a, home_a), (b, home_b)].map(|(measurement, centre)| {
                     let position = measurement.position;
                     self.phase_machine.is_far(position, centre)
-                        && !self.phase_machine.is_lifted(position, centre)
+                        && !self.phase_machine.is_lifted(position, centre, variance)
                         && Ends::is_off(position, centre, variance)
                 });
                 if far == [false; PLANES] || !state.levitation.is_armed {

@@ -271,13 +271,15 @@ impl PhaseMachine {
         square(position, centre) > self.travel_square
     }
 
-    /// Whether a rotor that was taken to float at `home` and is at `place` (m) has been lifted from there: it may have lain on a
-    /// wall that was told wrong.
+    /// Whether a rotor that was taken to float at `home`, with `variance` on an axis (m^2), and is at `place` (m) has been lifted
+    /// from there: it may have lain on a wall that was told wrong. An orbit of radius r has the variance r^2/2, and goes no
+    /// farther than 2 r from any of its places.
     #[inline(never)]
-    pub(crate) fn is_lifted(&self, place: [f32; 2], home: [f32; 2]) -> bool {
+    pub(crate) fn is_lifted(&self, place: [f32; 2], home: [f32; 2], variance: f32) -> bool {
+        let way = square(place, home);
         let is_nearer = square(place, [0.0; 2]) < square(home, [0.0; 2]);
         let rises = self.machine.gravity == 0.0 || place[1] > home[1];
-        self.is_far(place, home) && is_nearer && rises
+        way > self.travel_square && way > 8.0 * variance && is_nearer && rises
     }
 
     /// Whether a rotor that met the wall so many samples ago, with an impact (m/s) or without, fell there from where it would be,
@@ -435,15 +437,18 @@ mod tests {
     fn what_comes_up_and_nearer_to_the_centre_was_lifted() {
         let machine = machine();
         let at = |part: f32| [0.0, part * MACHINE.clearance];
-        for (home, place, is_lifted) in [
-            (-0.9, -0.7, true),
-            (-0.9, -0.8, false),
-            (0.3, 0.1, false),
-            (0.0, -0.5, false),
-            (-0.1, 0.15, false),
+        for (home, place, orbit, is_lifted) in [
+            (-0.9, -0.7, 0.0, true),
+            (-0.9, -0.8, 0.0, false),
+            (0.3, 0.1, 0.0, false),
+            (0.0, -0.5, 0.0, false),
+            (-0.1, 0.15, 0.0, false),
+            (-0.8, -0.3, 0.24, true),
+            (-0.8, -0.3, 0.26, false),
         ] {
+            let variance = 0.5 * square(at(orbit), [0.0; 2]);
             assert_eq!(
-                machine.is_lifted(at(place), at(home)),
+                machine.is_lifted(at(place), at(home), variance),
                 is_lifted,
                 "{home} {place}"
             );
