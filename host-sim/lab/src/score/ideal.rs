@@ -114,7 +114,9 @@ fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let rate = scene.run.sample_rate;
     let variance = bound::variance(&scene.sensors);
     let mut events = watched.detection.events.iter();
-    let fall = events.find(|it| it.event == EventKind::FreeFall && it.declared_s >= 0.0);
+    let fall = events.find(|it| {
+        it.event == EventKind::FreeFall && it.declared_s >= 0.0 && it.withdrawn_s.is_none()
+    });
     let impact = truth.impacts.first().map(|it| it.state.time);
     let touch = impact
         .into_iter()
