@@ -17,9 +17,9 @@ use touchdown_run::matching::match_events;
 use touchdown_scene::{Scene, Start};
 
 /// Part of the contacts that has to be dated within the time allowed.
-const MOST: f64 = 0.99;
+pub const MOST: f64 = 0.99;
 /// Time allowed, s, with friction and restitution known, and wrong by [`WRONG`].
-const ONSET: [f64; 2] = [1e-3, 3e-3];
+pub const ONSET: [f64; 2] = [1e-3, 3e-3];
 const WRONG: f64 = 0.3;
 /// Error of half of the ends of slip, s: twice the bound on the latency, 2.5 ms at 1 um and 20 kHz.
 const ROLLING: f64 = 5e-3;

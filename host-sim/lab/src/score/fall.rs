@@ -10,6 +10,7 @@ use touchdown_core::event::EventKind;
 
 use super::figure::{Curve, Curves, Figure, histogram};
 use super::levitated::{LEAD, Levitated, ORBIT, RUNOUT};
+use super::watch::Watched;
 use super::{Drop, Findings, Named, Plan, Row, bound, campaign, planes};
 use touchdown_base::evenly::{direction, in_disc};
 use touchdown_base::failure::Failure;
@@ -177,33 +178,33 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
 
 /// What became of one drop.
 #[derive(Clone, Copy, Debug)]
-struct Fall {
-    /// Declared minus release, s; infinite if missed.
-    latency: f64,
+pub struct Fall {
+    /// Declared minus release, s; infinite if missed or withdrawn.
+    pub latency: f64,
     /// Likewise confirmed.
-    confirmed: f64,
+    pub confirmed: f64,
     /// Declared before the release.
-    early: usize,
+    pub early: usize,
 }
 
-fn fall(drop: &Drop) -> Result<Fall, Failure> {
-    let watched = drop.watch()?;
+/// Of a drop that was watched.
+pub fn fall(watched: &Watched) -> Fall {
     let events = watched.detection.events.iter();
     let falls = events.filter(|it| it.event == EventKind::FreeFall);
     let (early, late): (Vec<_>, Vec<_>) = falls.partition(|it| it.declared_s < 0.0);
     let found = late.iter().find(|it| it.withdrawn_s.is_none());
     let confirmed = found.and_then(|it| it.confirmed_s);
-    Ok(Fall {
+    Fall {
         latency: found.map_or(f64::INFINITY, |it| it.declared_s),
         confirmed: confirmed.unwrap_or(f64::INFINITY),
         early: early.len(),
-    })
+    }
 }
 
 pub fn run(plan: &Plan) -> Result<Findings, Failure> {
     let cases = cases();
     let falls = campaign::map(plan, "fall", &cases, |case, mut random| {
-        fall(&case.drop(plan, &mut random)?)
+        Ok(fall(&case.drop(plan, &mut random)?.watch()?))
     })?;
     let mut rows = Vec::new();
     for (case, falls) in cases.iter().zip(&falls) {

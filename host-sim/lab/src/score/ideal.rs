@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use itertools::iproduct;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use touchdown_core::event::EventKind;
 
-use super::contact::contact_error;
+use super::contact::{MOST, ONSET, contact_error};
+use super::fall::{Fall, fall};
 use super::impact::{Impacts, ORBIT_LEAD, TURNS};
 use super::levitated::{LEAD, Levitated, ORBIT};
 use super::whirl::has_wrong_sign;
@@ -24,8 +24,6 @@ const LATE: [f64; 2] = [1.15, 1.3];
 const CONFIRMED: [f64; 2] = [0.7, 0.99];
 /// Slowest loop of magnets that a fall has to be told from, Hz: until a quarter of its period is over they may catch the rotor.
 const LOOP: f64 = 80.0;
-/// Part of the contacts that are dated within 1 ms.
-const DATED: f64 = 0.99;
 
 /// What no rotor's surface goes beyond, m/s: steel would burst.
 const SURFACE_SPEED: f64 = 400.0;
@@ -97,10 +95,10 @@ pub fn drops(plan: &Plan, random: &mut ChaCha8Rng) -> Result<Named, Failure> {
 /// What was seen of a drop.
 #[derive(Clone, Debug)]
 struct Seen {
-    /// Of the fall's latency to its bound; infinite if it was missed.
-    late: f64,
-    /// Of the time to the confirmation to that to the first touch; likewise. None where the fall is too short for that.
-    confirmed: Option<f64>,
+    fall: Fall,
+    /// Lowest latency of the fall that noise allows, and the time to the first touch, s.
+    bound: f64,
+    touch: f64,
     impacts: Impacts,
     /// Of the first contact, s; none where there is none.
     contact: Option<f64>,
@@ -111,25 +109,15 @@ struct Seen {
 fn seen(drop: &Drop) -> Result<Seen, Failure> {
     let watched = drop.watch()?;
     let (scene, truth) = (&drop.scene, &watched.truth);
-    let rate = scene.run.sample_rate;
-    let variance = bound::variance(&scene.sensors);
-    let mut events = watched.detection.events.iter();
-    let fall = events.find(|it| {
-        it.event == EventKind::FreeFall && it.declared_s >= 0.0 && it.withdrawn_s.is_none()
-    });
     let impact = truth.impacts.first().map(|it| it.state.time);
-    let touch = impact
-        .into_iter()
-        .chain(truth.contact_starts.first().copied());
-    let touch = touch.fold(f64::INFINITY, f64::min);
-    let confirmed = fall.and_then(|it| it.confirmed_s).map(|it| it / touch);
+    let contact = truth.contact_starts.first().copied();
+    let touches = impact.into_iter().chain(contact);
+    let variance = bound::variance(&scene.sensors);
     let signs = watched.detection.events.iter();
     Ok(Seen {
-        late: fall.map_or(f64::INFINITY, |it| {
-            it.declared_s / bound::fall(variance, scene.run.gravity, rate)
-        }),
-        confirmed: (CONFIRMED[0] * touch >= 0.25 / LOOP)
-            .then(|| confirmed.unwrap_or(f64::INFINITY)),
+        fall: fall(&watched),
+        bound: bound::fall(variance, scene.run.gravity, scene.run.sample_rate),
+        touch: touches.fold(f64::INFINITY, f64::min),
         impacts: Impacts::of(drop, &watched),
         contact: contact_error(&watched),
         wrong_signs: signs
@@ -151,7 +139,7 @@ pub fn run(plan: &Plan) -> Result<Findings, Failure> {
 
 fn judged(case: Case, drops: &[Seen]) -> Vec<Row> {
     let name = &case.name();
-    let late: Vec<f64> = drops.iter().map(|it| it.late).collect();
+    let late: Vec<f64> = drops.iter().map(|it| it.fall.latency / it.bound).collect();
     let missed = late.iter().filter(|it| !it.is_finite()).count();
     let mut rows = Vec::new();
     // The bound is of many samples in a fall.
@@ -169,9 +157,13 @@ fn judged(case: Case, drops: &[Seen]) -> Vec<Row> {
         }
     }
     let [part, most] = CONFIRMED;
-    let confirmed: Vec<f64> = drops.iter().filter_map(|it| it.confirmed).collect();
+    let long = drops.iter().filter(|it| part * it.touch >= 0.25 / LOOP);
+    let confirmed: Vec<f64> = long.map(|it| it.fall.confirmed / it.touch).collect();
+    let early: usize = drops.iter().map(|it| it.fall.early).sum();
     rows.push(
         Row::quantile_at_most(name, "confirmed_p99_of_fall", &confirmed, most, part)
+            .and(early == 0)
+            .with("false_falls", early)
             .with("falls", confirmed.len())
             .with("confirmed_median_of_fall", median(&confirmed)),
     );
@@ -180,13 +172,13 @@ fn judged(case: Case, drops: &[Seen]) -> Vec<Row> {
     let contacts: Vec<f64> = (drops.iter().filter_map(|it| it.contact))
         .map(f64::abs)
         .collect();
-    let within = contacts.iter().filter(|it| **it <= 1e-3).count();
+    let within = contacts.iter().filter(|it| **it <= ONSET[0]).count();
     rows.push(
         Row::at_least(
             name,
             "share_within_1_ms",
             share(within, contacts.len()),
-            DATED,
+            MOST,
         )
         .of(contacts.len())
         .with("contacts", contacts.len())
